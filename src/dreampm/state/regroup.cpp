@@ -193,6 +193,7 @@ void permute(Vector& column, Vector& spare, const std::vector<std::uint32_t>& fr
     auto* target = spare.data();
     for (; begin < end; begin += std::min(piece, end - begin)) {
       const std::size_t stop = std::min(begin + piece, end);
+#pragma GCC unroll 8
       for (std::size_t i = begin; i < stop; ++i) target[i] = source[from[i]];
       change(target + begin, target + stop);
     }

@@ -15,14 +15,14 @@ constexpr int steps_per_piece = 4;
 
 }  // namespace
 
-LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
+LargeSteps::LargeSteps(Waters waters, const Vec3i& cells, std::string_view isa) : backend_(make_cpu_backend(isa)) {
   const MaterialInfo& water = *find_material("newtonian");
   BenchScene scene = waters == Waters::calm ? tank_scene(water, cells) : column_scene(water, cells);
   World<float>& w = scene.world;
   w.settings.solver = SolverKind::projection, w.settings.cfl = usual_projection_cfl;
   w.sets[0].carries_motion = true;
   auto world = std::make_unique<World<float>>(std::move(scene.world));
-  Projection<float> solver;
+  Projection<float> solver(backend_.get());
   Motion<float> motion;
   solver.begin(*world, scene.seeds);
   scene.seeds = {};
@@ -34,7 +34,7 @@ LargeSteps::LargeSteps(Waters waters, const Vec3i& cells) {
 
 Timing LargeSteps::run(const Pace& pace) const {
   const auto particles = static_cast<double>(start_->particles());
-  Projection<float> solver;
+  Projection<float> solver(backend_.get());
   Motion<float> motion;
   Timing timing;
   {

@@ -54,10 +54,10 @@ template <class R, class Body>
 void for_blocks_by_color(const World<R>& world, const Body& body) {
   // Blocks of one color do not reach the same cells.
   const std::vector<Vec3i>& blocks = world.particle_blocks;
-  std::vector<std::uint32_t> colored[8];
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    colored[(blocks[b].x & 1) * 4 + (blocks[b].y & 1) * 2 + (blocks[b].z & 1)].push_back(static_cast<std::uint32_t>(b));
-  for (const auto& list : colored) parallel_for(list.size(), 4, [&](std::size_t n) { body(std::size_t{list[n]}); });
+  for (int color = 0; color < 8; ++color)
+    parallel_for(blocks.size(), 32, [&](std::size_t b) {
+      if ((blocks[b].x & 1) * 4 + (blocks[b].y & 1) * 2 + (blocks[b].z & 1) == color) body(b);
+    });
 }
 
 }  // namespace dreampm

@@ -1,5 +1,7 @@
 #include "dreampm/solver/projection/cell_rows.h"
 
+#include <algorithm>
+
 #include "dreampm/base/narrow.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/state/resize_for_overwrite.h"
@@ -24,11 +26,14 @@ void CellRows::lay(const std::vector<Vec3i>& blocks, const Vec3i& period) {
 }
 
 void CellRows::lay_coarser(const CellRows& fine) {
-  std::vector<Vec3i> coarse;
+  scratch_.clear();
   for (const Vec3i& t : fine.tiles_.all())
-    if (const Vec3i half{t.x >> 1, t.y >> 1, t.z >> 1}; coarse.empty() || !(coarse.back() == half))
-      coarse.push_back(half);
-  tiles_.assign(std::move(coarse));
+    if (const Vec3i half{t.x >> 1, t.y >> 1, t.z >> 1}; scratch_.empty() || !(scratch_.back() == half))
+      scratch_.push_back(half);
+  // Not in order, and some come again.
+  std::sort(scratch_.begin(), scratch_.end(), block_less);
+  scratch_.erase(std::unique(scratch_.begin(), scratch_.end()), scratch_.end());
+  tiles_.exchange(scratch_);
   lay_tiles();
 }
 
@@ -36,14 +41,19 @@ void CellRows::lay_tiles() {
   const std::size_t count = tiles_.size();
   resize_for_overwrite(places_, count);
   std::size_t next = rows_outside;
+  outside_.clear();
+  for (std::uint32_t row = 0; row < rows_outside; ++row) outside_.push_back(row);
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
     for (end = begin + 1; end < count && tiles_[end] == tiles_[end - 1] + Vec3i{0, 0, 1};) ++end;
     const std::size_t length = end - begin;
     for (std::size_t t = begin; t < end; ++t)
       places_[t] = {narrow<std::uint32_t>(next + 1 + (t - begin), "rows of cells"),
                     static_cast<std::uint32_t>(length + 1)};
+    for (std::size_t column = 0; column <= tile_rows; ++column)
+      outside_.push_back(static_cast<std::uint32_t>(next + column * (length + 1)));
     next += tile_rows * (length + 1) + 1;
   }
+  outside_.push_back(narrow<std::uint32_t>(next, "rows of cells"));
   row_count_ = next + 1;
 
   resize_for_overwrite(rows_, count * tile_rows);

@@ -48,6 +48,11 @@ class CellRows {
   std::size_t size() const { return row_count_ * row_cells; }
   /// In the order of their memory.
   std::span<const Row> rows() const { return rows_; }
+  /// Sets what belongs to no cell in an array over all rows.
+  template <class T>
+  void fill_outside(T* field, T value) const {
+    for (const std::uint32_t row : outside_) std::fill_n(field + std::size_t{row} * row_cells, row_cells, value);
+  }
   /// The number of the row that a cell is in; `outside` where there is none.
   std::uint32_t row_of(const Vec3i& cell) const;
   /// The place of a cell in an array; one that belongs to no cell where there is none.
@@ -120,6 +125,7 @@ class CellRows {
   BlockList tiles_;
   std::vector<Tile> places_;  ///< of the tiles
   std::vector<Row> rows_;
+  std::vector<std::uint32_t> outside_;
   std::vector<Vec3i> scratch_;
   std::vector<Copy> copies_;
   Vec3i period_;

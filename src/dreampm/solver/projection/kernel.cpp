@@ -1,9 +1,10 @@
 // The loops of the projection in lanes. Built once per instruction set (DM_ISA), as the kernels of
 // the cpu backend: it must export nothing but its table (tools/check_kernels).
 #include "dreampm/math/lanes.h"
+#include "dreampm/solver/projection/giving_loops.h"
 #include "dreampm/solver/projection/multigrid_loops.h"
-#include "dreampm/solver/projection/particle_loops.h"
 #include "dreampm/solver/projection/row_loops.h"
+#include "dreampm/solver/projection/taking_loops.h"
 
 static_assert(HWY_STATIC_TARGET == DM_HWY_TARGET,
               "Highway fell to another target than this file's flags are meant for");

@@ -1,9 +1,10 @@
 #include "dreampm/solver/projection/kernels.h"
 
 #include "dreampm/backend/cpu/kernel.h"
+#include "dreampm/solver/projection/giving_loops.h"
 #include "dreampm/solver/projection/multigrid_loops.h"
-#include "dreampm/solver/projection/particle_loops.h"
 #include "dreampm/solver/projection/row_loops.h"
+#include "dreampm/solver/projection/taking_loops.h"
 
 namespace dreampm {
 namespace {

@@ -59,6 +59,12 @@ struct BlockMove {
   double lost = 0;      ///< J, at colliders
   bool finite = true;
   bool far = false;  ///< whether any went more than a block
+
+  void add(const BlockMove& b) {
+    fastest2 = b.fastest2 > fastest2 ? b.fastest2 : fastest2;
+    speed2 += b.speed2, slope2 += b.slope2, lost += b.lost;
+    finite = finite && b.finite, far = far || b.far;
+  }
 };
 
 /// What the particles of one block give to the grid.
@@ -106,16 +112,16 @@ template <class R>
 struct RowKernels {
   using Grid = GridRows<R>;
   /// `free` from `sums` and what gravity gives; less than the weight `least` reaches no face.
-  void (*free_velocities)(const Grid& grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least);
+  void (*free_velocities)(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least);
   /// fill_matrix, of rows with liquid.
-  void (*matrix)(const Grid& grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to);
+  void (*matrix)(Grid grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to);
   /// `velocity` of faces at liquid that are open; others become unknown.
-  void (*apply_pressure)(const Grid& grid, std::size_t begin, std::size_t end);
+  void (*apply_pressure)(Grid grid, std::size_t begin, std::size_t end);
   /// `moving` becomes `velocity`, and of unknown faces the mean of the known ones beside them;
   /// where `bring_free` says so and they are open those farther off get `free`.
-  void (*extend)(const Grid& grid, std::size_t begin, std::size_t end, int axis, bool bring_free);
+  void (*extend)(Grid grid, std::size_t begin, std::size_t end, int axis, bool bring_free);
   /// `moving` becomes `velocity` without the slope of `displacement` [m/s for each cell] at liquid.
-  void (*move)(const Grid& grid, std::size_t begin, std::size_t end, const R* displacement, R speed);
+  void (*move)(Grid grid, std::size_t begin, std::size_t end, const R* displacement, R speed);
 };
 
 /// A level of the multigrid (PressureLevel), as loops over its rows see it.
@@ -126,32 +132,38 @@ struct LevelRows {
   R *x, *b;
 };
 
-/// Loops over the rows [begin, end) of a level. Those that return a sum make it in one order.
+/// Loops over the rows [begin, end) of a level, which is passed by value: what they write could
+/// else be a part of it. Those that return a sum make it in one order.
 template <class R>
 struct MultigridKernels {
   using Level = LevelRows<R>;
   /// Half a sweep of Gauss and Seidel from x = 0, of the cells of one color; the others become 0.
-  void (*first_half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
-  void (*half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
+  void (*first_half_sweep)(Level level, std::size_t begin, std::size_t end, int color);
+  void (*half_sweep)(Level level, std::size_t begin, std::size_t end, int color);
   /// The same; returns x . b.
-  double (*last_half_sweep)(const Level& level, std::size_t begin, std::size_t end, int color);
+  double (*last_half_sweep)(Level level, std::size_t begin, std::size_t end, int color);
   /// to = b - A x
-  void (*residual)(const Level& level, std::size_t begin, std::size_t end, R* to);
+  void (*residual)(Level level, std::size_t begin, std::size_t end, R* to);
   /// b -= A x of another x; returns b . b.
-  double (*take_off)(const Level& level, std::size_t begin, std::size_t end, const R* x);
+  double (*take_off)(Level level, std::size_t begin, std::size_t end, const R* x);
   /// y = A x; returns x . y.
-  double (*product)(const Level& level, std::size_t begin, std::size_t end, const R* x, R* y);
+  double (*product)(Level level, std::size_t begin, std::size_t end, const R* x, R* y);
   /// direction = x + beta direction, of the level's x.
-  void (*turn)(const Level& level, std::size_t begin, std::size_t end, R beta, R* direction);
+  void (*turn)(Level level, std::size_t begin, std::size_t end, R beta, R* direction);
   /// x += alpha direction and b -= alpha product; returns b . b.
-  double (*advance)(const Level& level, std::size_t begin, std::size_t end, R alpha, const R* direction,
-                    const R* product, R* x);
+  double (*advance)(Level level, std::size_t begin, std::size_t end, R alpha, const R* direction, const R* product,
+                    R* x);
   /// The right side of a coarser level: of each row's aggregates the sum of the fine residuals `r`.
   /// `children`: the fine rows that a row is made of, by (i * 2 + j) * 2 + half along z.
-  void (*gather)(const Level& coarse, std::size_t begin, std::size_t end, const std::array<std::uint32_t, 8>* children,
+  void (*gather)(Level coarse, std::size_t begin, std::size_t end, const std::array<std::uint32_t, 8>* children,
                  const R* r);
+  /// The matrix of a coarser level: of aggregates the sums of the fine coefficients, times `scale`.
+  void (*coarsen)(Level fine, Level coarse, const MatrixRows<R>& to, std::size_t begin, std::size_t end,
+                  const std::array<std::uint32_t, 8>* children, R scale);
+  /// to = 1 / diagonal, 0 where that is 0.
+  void (*invert)(Level level, std::size_t begin, std::size_t end, R* to);
   /// x += that of the aggregates. `parents`: of each row the place of its first cell's.
-  void (*spread)(const Level& fine, std::size_t begin, std::size_t end, const std::uint32_t* parents, const R* coarse);
+  void (*spread)(Level fine, std::size_t begin, std::size_t end, const std::uint32_t* parents, const R* coarse);
 };
 
 /// The loops that one instruction set has.

@@ -38,13 +38,19 @@ void MacGrid<R>::lay(const World<R>& world) {
   holding.colliders.clear();
   for (const Collider& c : world.colliders) holding.colliders.push_back(c.contact() == WallType::stick);
   const std::size_t size = cells.size();
+  // Where all cells are written before they are read.
+  const auto lay_outside = [&](Field& field, R value) {
+    resize_for_overwrite(field, size);
+    cells.fill_outside(field.data(), value);
+  };
   for (std::size_t a = 0; a < 3; ++a) {
     fill(sums[a], size, FaceSum<R>{});
-    fill(open[a], size, 0);
-    for (Field* f : {&free[a], &velocity[a], &moving[a]}) fill(*f, size, unknown_velocity<R>);
+    lay_outside(open[a], R(0));
+    for (Field* f : {&free[a], &velocity[a], &moving[a]}) lay_outside(*f, unknown_velocity<R>);
   }
   for (Field* f : {&density, &impulse, &displacement}) fill(*f, size, 0);
-  for (Field* f : {&depth, &scratch}) fill(*f, size, -1);
+  lay_outside(depth, R(-1));
+  fill(scratch, size, -1);
   fill(held, size, 0);
   if (world.colliders.empty())
     room.clear();
@@ -86,9 +92,9 @@ void MacGrid<R>::lay(const World<R>& world) {
   for_all_rows(cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
     const auto [first, last] = lanes_within(row);
     for (int a = 0; a < 3; ++a) {
-      if (a < 2 && row.first[a] == low[a]) continue;
-      for (int l = std::max(first, a == 2 ? low.z - row.first.z + 1 : 0); l < last; ++l)
-        open[static_cast<std::size_t>(a)][at.own + static_cast<std::size_t>(l)] = R(1);
+      const int begin = a == 2 ? std::max(first, low.z - row.first.z + 1) : row.first[a] == low[a] ? row_cells : first;
+      R* const to = open[static_cast<std::size_t>(a)].data() + at.own;
+      for (int l = 0; l < row_cells; ++l) to[l] = l >= begin && l < last ? R(1) : R(0);
     }
   });
   for (Field& f : open) wrap(f);

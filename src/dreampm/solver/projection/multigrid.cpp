@@ -51,12 +51,24 @@ void clear(LargeVector<R>& v, std::size_t size) {
   });
 }
 
+/// Of some rows with unknowns: what is read of the others is 0.
 template <class R>
-void clear(PressureLevel<R>& level, std::size_t size) {
-  for (auto* v :
-       {&level.diagonal, &level.inverse, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r})
-    clear(*v, size);
+void lay(PressureLevel<R>& level, const CellRows& cells) {
+  for (auto* v : {&level.diagonal, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r})
+    clear(*v, cells.size());
+  resize_for_overwrite(level.inverse, cells.size());
   level.rows.clear();
+}
+
+/// Of all rows.
+template <class R>
+void lay_whole(PressureLevel<R>& level, const CellRows& cells) {
+  for (auto* v : {&level.diagonal, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r}) {
+    resize_for_overwrite(*v, cells.size());
+    cells.fill_outside(v->data(), R(0));
+  }
+  resize_for_overwrite(level.inverse, cells.size());
+  level.rows.assign(cells.rows().begin(), cells.rows().end());
 }
 
 }  // namespace
@@ -68,9 +80,9 @@ void PressureSolver<R>::begin(const CellRows& cells, int longest) {
   depth_ = 1;
   for (int n = longest; n > coarsest_cells; n = (n + 1) / 2) ++depth_;
   if (levels_.size() < depth_) levels_.resize(depth_), coarse_.resize(depth_), parents_.resize(depth_);
-  clear(levels_.front(), cells.size());
+  lay(levels_.front(), cells);
   clear(direction_, cells.size());
-  clear(product_, cells.size());
+  resize_for_overwrite(product_, cells.size());
 }
 
 template <class R>
@@ -81,46 +93,31 @@ void PressureSolver<R>::set_up() {
     PressureLevel<R>&fine = levels_[l], &level = levels_[l + 1];
     Coarse& coarse = coarse_[l];
     coarse.cells.lay_coarser(*fine_cells);
-    clear(level, coarse.cells.size());
-    const std::span<const Row> all = coarse.cells.rows();
-    level.rows.assign(all.begin(), all.end());
+    lay_whole(level, coarse.cells);
     coarse.children.resize(level.rows.size());
+    resize_for_overwrite(parent_of_, fine_cells->size() / row_cells);
     for_rows(level.rows, [&](std::size_t n, const Row& row) {
-      const std::size_t c = place(row.number);
       for (int part = 0; part < 8; ++part) {
         const int i = part >> 2, j = part >> 1 & 1, half = part & 1;
         const std::uint32_t child =
             fine_cells->row_of({2 * row.first.x + i, 2 * row.first.y + j, 2 * row.first.z + half * row_cells});
         coarse.children[n][static_cast<std::size_t>(part)] = child;
-        const std::size_t f = place(child);
-        for (std::size_t e = 0; e < row_cells; ++e) {
-          const std::size_t t = c + static_cast<std::size_t>(half) * row_cells / 2 + e / 2;
-          R d = fine.diagonal[f + e];
-          if (!(d > R(0))) continue;
-          // A coupling within the aggregate leaves the diagonal, for both of its cells.
-          const auto couple = [&](std::size_t axis, bool within) {
-            if (within)
-              d -= 2 * fine.low[axis][f + e];
-            else
-              level.low[axis][t] += static_cast<R>(aggregate_scale) * fine.low[axis][f + e];
-          };
-          couple(0, i == 1), couple(1, j == 1), couple(2, e % 2 == 1);
-          level.diagonal[t] += static_cast<R>(aggregate_scale) * d;
-        }
+        if (child != CellRows::outside)
+          parent_of_[child] =
+              static_cast<std::uint32_t>(place(row.number) + static_cast<std::size_t>(half) * row_cells / 2);
       }
     });
-    parents_[l].resize(fine.rows.size());
-    for_rows(fine.rows, [&](std::size_t n, const Row& row) {
-      parents_[l][n] =
-          static_cast<std::uint32_t>(coarse.cells.place_of({row.first.x >> 1, row.first.y >> 1, row.first.z >> 1}));
+    parallel_ranges(level.rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+      kernels_.coarsen(fine.as_rows(), level.as_rows(), level.as_matrix(), begin, end, coarse.children.data(),
+                       static_cast<R>(aggregate_scale));
     });
+    parents_[l].resize(fine.rows.size());
+    for_rows(fine.rows, [&](std::size_t n, const Row& row) { parents_[l][n] = parent_of_[row.number]; });
     fine_cells = &coarse.cells;
   }
   for (std::size_t l = 0; l < depth_; ++l)
-    for_rows(levels_[l].rows, [&](std::size_t, const Row& row) {
-      const std::size_t c = place(row.number);
-      for (std::size_t e = c; e < c + row_cells; ++e)
-        levels_[l].inverse[e] = levels_[l].diagonal[e] > R(0) ? 1 / levels_[l].diagonal[e] : R(0);
+    parallel_ranges(levels_[l].rows.size(), grain, [&](std::size_t begin, std::size_t end) {
+      kernels_.invert(levels_[l].as_rows(), begin, end, levels_[l].inverse.data());
     });
 }
 
@@ -189,17 +186,19 @@ void PressureSolver<R>::find_pockets() {
     if (level.diagonal[from] > R(0)) join(from, to);
   });
   // One that has a surface somewhere is none.
-  std::vector<bool> open(cells_->size(), false);
+  std::vector<std::uint8_t>& open = open_;
+  open.assign(cells_->size(), 0);
   for (const Row& row : level.rows) {
     const std::size_t first = place(row.number), xh = place(row.x_high), yh = place(row.y_high);
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = first + l;
       const R coupled = level.low[0][c] + level.low[0][xh + l] + level.low[1][c] + level.low[1][yh + l] +
                         level.low[2][c] + level.low[2][c + 1];
-      if (level.diagonal[c] > coupled * static_cast<R>(1 + 1e-5)) open[root_of(c)] = true;
+      if (level.diagonal[c] > coupled * static_cast<R>(1 + 1e-5)) open[root_of(c)] = 1;
     }
   }
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> found;
+  auto& found = found_;
+  found.clear();
   for (const Row& row : level.rows)
     for (std::size_t c = place(row.number); c < place(row.number) + row_cells; ++c)
       if (const std::size_t r = root_of(c); level.diagonal[c] > R(0) && !open[r])

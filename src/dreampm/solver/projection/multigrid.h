@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dreampm/base/large_vector.h"
@@ -22,6 +23,7 @@ struct PressureLevel {
   std::array<LargeVector<R>, 3> low;  ///< coupling to the cell on the low side of each axis, 0 or more
   LargeVector<R> x, b, r;
   std::vector<CellRows::Row> rows;  ///< those with unknowns
+  MatrixRows<R> as_matrix() { return {diagonal.data(), {low[0].data(), low[1].data(), low[2].data()}, b.data()}; }
   LevelRows<R> as_rows() {
     return {rows.data(), diagonal.data(), inverse.data(), {low[0].data(), low[1].data(), low[2].data()},
             x.data(),    b.data()};
@@ -94,9 +96,12 @@ class PressureSolver {
   std::size_t depth_ = 0;       ///< levels in use
   /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
+  std::vector<std::uint32_t> parent_of_;  ///< the same by the numbers of rows, for one level at a time
   LargeVector<R> direction_, product_;
-  std::vector<std::uint32_t> roots_, pocket_cells_;  ///< the cells of pockets, one pocket after the other
-  std::vector<std::size_t> pockets_;                 ///< where each begins, and the end
+  std::vector<std::uint32_t> roots_, pocket_cells_;             ///< the cells of pockets, one pocket after the other
+  std::vector<std::size_t> pockets_;                            ///< where each begins, and the end
+  std::vector<std::uint8_t> open_;                              ///< of roots: whether there is a surface
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> found_;  ///< roots and cells of pockets
   std::vector<double> parts_;
 };
 

@@ -48,8 +48,12 @@ DM_FN void neighbors_of(const LevelRows<R>& level, const R* x, const CellRows::R
   product(ax + xh, x + xh, part), sum += part;
   product(ay + c, x + yl, part), sum += part;
   product(ay + yh, x + yh, part), sum += part;
-  product(az + c, x + c - 1, part), sum += part;
-  product(az + c + 1, x + c + 1, part), sum += part;
+  // Out of the row itself: a vector that begins in the row before, which may have just been
+  // written, would have to wait until that is in memory.
+  Eight<R> own, before = Eight<R>{} + x[c - 1], after = Eight<R>{} + x[c + row_cells], coupling;
+  load_eight(x + c, own);
+  load_eight(az + c, coupling), sum += coupling * __builtin_shufflevector(before, own, 0, 8, 9, 10, 11, 12, 13, 14);
+  load_eight(az + c + 1, coupling), sum += coupling * __builtin_shufflevector(own, after, 1, 2, 3, 4, 5, 6, 7, 8);
 }
 
 /// Of eight numbers those of even places from `even`, the others from `odd`.
@@ -90,7 +94,7 @@ DM_FN void residual_of(const LevelRows<R>& level, const R* x, const CellRows::Ro
 template <class R, class Isa>
 struct MultigridLoops {
   using Level = LevelRows<R>;
-  static void first_half_sweep(const Level& level, std::size_t begin, std::size_t end, int color) {
+  static void first_half_sweep(Level level, std::size_t begin, std::size_t end, int color) {
     for (std::size_t n = begin; n < end; ++n) {
       const CellRows::Row& row = level.rows[n];
       const std::size_t c = row_place(row.number);
@@ -104,13 +108,13 @@ struct MultigridLoops {
       store_eight(x, level.x + c);
     }
   }
-  static void half_sweep(const Level& level, std::size_t begin, std::size_t end, int color) {
+  static void half_sweep(Level level, std::size_t begin, std::size_t end, int color) {
     for (std::size_t n = begin; n < end; ++n) {
       Eight<R> x, b;
       relax<R>(level, level.rows[n], color, x, b);
     }
   }
-  static double last_half_sweep(const Level& level, std::size_t begin, std::size_t end, int color) {
+  static double last_half_sweep(Level level, std::size_t begin, std::size_t end, int color) {
     Eight<double> sum{};
     for (std::size_t n = begin; n < end; ++n) {
       Eight<R> x, b;
@@ -119,14 +123,14 @@ struct MultigridLoops {
     }
     return sum_of_eight(sum);
   }
-  static void residual(const Level& level, std::size_t begin, std::size_t end, R* to) {
+  static void residual(Level level, std::size_t begin, std::size_t end, R* to) {
     for (std::size_t n = begin; n < end; ++n) {
       Eight<R> r;
       residual_of<R>(level, level.x, level.rows[n], r);
       store_eight(r, to + row_place(level.rows[n].number));
     }
   }
-  static double take_off(const Level& level, std::size_t begin, std::size_t end, const R* x) {
+  static double take_off(Level level, std::size_t begin, std::size_t end, const R* x) {
     Eight<double> sum{};
     for (std::size_t n = begin; n < end; ++n) {
       Eight<R> r;
@@ -136,7 +140,7 @@ struct MultigridLoops {
     }
     return sum_of_eight(sum);
   }
-  static double product(const Level& level, std::size_t begin, std::size_t end, const R* x, R* y) {
+  static double product(Level level, std::size_t begin, std::size_t end, const R* x, R* y) {
     Eight<double> sum{};
     for (std::size_t n = begin; n < end; ++n) {
       const CellRows::Row& row = level.rows[n];
@@ -150,7 +154,7 @@ struct MultigridLoops {
     }
     return sum_of_eight(sum);
   }
-  static void turn(const Level& level, std::size_t begin, std::size_t end, R beta, R* direction) {
+  static void turn(Level level, std::size_t begin, std::size_t end, R beta, R* direction) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t c = row_place(level.rows[n].number);
       Eight<R> x, d;
@@ -158,8 +162,8 @@ struct MultigridLoops {
       store_eight<R>(x + beta * d, direction + c);
     }
   }
-  static double advance(const Level& level, std::size_t begin, std::size_t end, R alpha, const R* direction,
-                        const R* product, R* x) {
+  static double advance(Level level, std::size_t begin, std::size_t end, R alpha, const R* direction, const R* product,
+                        R* x) {
     Eight<double> sum{};
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t c = row_place(level.rows[n].number);
@@ -172,8 +176,8 @@ struct MultigridLoops {
     }
     return sum_of_eight(sum);
   }
-  static void gather(const Level& coarse, std::size_t begin, std::size_t end,
-                     const std::array<std::uint32_t, 8>* children, const R* r) {
+  static void gather(Level coarse, std::size_t begin, std::size_t end, const std::array<std::uint32_t, 8>* children,
+                     const R* r) {
     for (std::size_t n = begin; n < end; ++n) {
       Eight<R> low, high, part;
       const auto& of = children[n];
@@ -188,8 +192,55 @@ struct MultigridLoops {
                      coarse.b + row_place(coarse.rows[n].number));
     }
   }
-  static void spread(const Level& fine, std::size_t begin, std::size_t end, const std::uint32_t* parents,
-                     const R* coarse) {
+  static void coarsen(Level fine, Level coarse, const MatrixRows<R>& to, std::size_t begin, std::size_t end,
+                      const std::array<std::uint32_t, 8>* children, R scale) {
+    const Eight<R> odd{0, 2, 0, 2, 0, 2, 0, 2};
+    for (std::size_t n = begin; n < end; ++n) {
+      // Of the lower and the upper four aggregates of the row.
+      Eight<R> diagonal[2]{}, low[3][2]{};
+#pragma GCC unroll 8
+      for (std::size_t part = 0; part < 8; ++part) {
+        const std::size_t i = part >> 2, j = part >> 1 & 1, half = part & 1, f = row_place(children[n][part]);
+        Eight<R> d, x, y, z;
+        load_eight(fine.diagonal + f, d), load_eight(fine.low[0] + f, x), load_eight(fine.low[1] + f, y),
+            load_eight(fine.low[2] + f, z);
+        // A coupling within the aggregate leaves the diagonal, for both of its cells.
+        d -= odd * z;
+        if (i == 1)
+          d -= x + x;
+        else
+          low[0][half] += x;
+        if (j == 1)
+          d -= y + y;
+        else
+          low[1][half] += y;
+        low[2][half] += z;
+        diagonal[half] += d;
+      }
+      const std::size_t c = row_place(coarse.rows[n].number);
+      const auto even = [](const Eight<R>(&v)[2], Eight<R>& found) __attribute__((always_inline)) {
+        found = __builtin_shufflevector(v[0], v[1], 0, 2, 4, 6, 8, 10, 12, 14);
+      };
+      const auto both = [&](const Eight<R>(&v)[2], Eight<R>& found) __attribute__((always_inline)) {
+        even(v, found), found += __builtin_shufflevector(v[0], v[1], 1, 3, 5, 7, 9, 11, 13, 15);
+      };
+      Eight<R> sum;
+      both(diagonal, sum), store_eight<R>(scale * sum, to.diagonal + c);
+      both(low[0], sum), store_eight<R>(scale * sum, to.low[0] + c);
+      both(low[1], sum), store_eight<R>(scale * sum, to.low[1] + c);
+      even(low[2], sum), store_eight<R>(scale * sum, to.low[2] + c);
+    }
+  }
+  static void invert(Level level, std::size_t begin, std::size_t end, R* to) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t c = row_place(level.rows[n].number);
+      Eight<R> d;
+      load_eight(level.diagonal + c, d);
+      const auto is = d > R(0);
+      store_eight<R>(is ? R(1) / (is ? d : Eight<R>{} + R(1)) : Eight<R>{}, to + c);
+    }
+  }
+  static void spread(Level fine, std::size_t begin, std::size_t end, const std::uint32_t* parents, const R* coarse) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t c = row_place(fine.rows[n].number);
       Eight<R> x, diagonal;
@@ -201,7 +252,8 @@ struct MultigridLoops {
     }
   }
   static constexpr MultigridKernels<R> table{&first_half_sweep, &half_sweep, &last_half_sweep, &residual, &take_off,
-                                             &product,          &turn,       &advance,         &gather,   &spread};
+                                             &product,          &turn,       &advance,         &gather,   &coarsen,
+                                             &invert,           &spread};
 };
 
 }  // namespace dreampm

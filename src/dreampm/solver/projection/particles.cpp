@@ -177,8 +177,8 @@ R speed2_of(const ParticleSet<R>& set, std::size_t p) {
 
 /// m/s, that all but 0.1 % of the particles keep.
 template <class R>
-double usual_speed(const World<R>& world) {
-  std::vector<float> sampled;
+double usual_speed(const World<R>& world, std::vector<float>& sampled) {
+  sampled.clear();
   constexpr std::size_t stride = 16;  // of the particles whose speed stands for all
   for (const ParticleSet<R>& set : world.sets)
     for (std::size_t p = 0; p < set.size(); p += stride) sampled.push_back(static_cast<float>(speed2_of(set, p)));
@@ -203,25 +203,23 @@ void particles_to_grid(const World<R>& world, const ProjectionKernels<R>& kernel
 
 template <class R>
 MoveStats grid_to_particles(World<R>& world, const ProjectionKernels<R>& kernels, const MacGrid<R>& grid,
-                            const CutCells<R>& cut, double dt, const Vec3d& kick) {
-  std::vector<BlockMove> found(world.particle_blocks.size());
+                            const CutCells<R>& cut, double dt, const Vec3d& kick, std::vector<float>& scratch) {
   MoveStats stats;
   for (ParticleSet<R>& set : world.sets) {
     if (set.size() == 0 || !is_projected(set)) continue;
-    parallel_for(found.size(), 4, [&](std::size_t b) {
-      found[b] = {};
-      if (set.block_start[b] < set.block_start[b + 1])
-        found[b] = take_block(world, set, b, kernels, grid, cut, dt, kick);
-    });
-    const double inertia = affine_inertia(set, world.dx);
-    for (const BlockMove& b : found) {
-      stats.fastest = std::max(stats.fastest, b.fastest2);
-      stats.kinetic += 0.5 * (set.mass * b.speed2 + inertia * b.slope2) - b.lost;
-      stats.finite = stats.finite && b.finite, stats.far = stats.far || b.far;
-    }
+    const BlockMove all = parallel_reduce(
+        world.particle_blocks.size(), BlockMove{},
+        [&](BlockMove& sum, std::size_t b) {
+          if (set.block_start[b] < set.block_start[b + 1])
+            sum.add(take_block(world, set, b, kernels, grid, cut, dt, kick));
+        },
+        [](BlockMove& sum, const BlockMove& from) { sum.add(from); });
+    stats.fastest = std::max(stats.fastest, all.fastest2);
+    stats.kinetic += 0.5 * (set.mass * all.speed2 + affine_inertia(set, world.dx) * all.slope2) - all.lost;
+    stats.finite = stats.finite && all.finite, stats.far = stats.far || all.far;
   }
   stats.fastest = std::sqrt(stats.fastest);
-  stats.usual = usual_speed(world);
+  stats.usual = usual_speed(world, scratch);
   return stats;
 }
 
@@ -236,7 +234,8 @@ FlowSpeeds flow_speeds(const World<R>& world) {
          parallel_reduce(set.size(), 0.0, [&](double& most, std::size_t p) { keep(most, speed2_of(set, p)); }, keep));
   }
   flow.fastest = std::sqrt(fastest2);
-  flow.usual = usual_speed(world);
+  std::vector<float> scratch;
+  flow.usual = usual_speed(world, scratch);
   return flow;
 }
 
@@ -244,7 +243,7 @@ FlowSpeeds flow_speeds(const World<R>& world) {
   template void particles_to_grid(const World<R>&, const ProjectionKernels<R>&, MacGrid<R>&);                         \
   template FlowSpeeds flow_speeds(const World<R>&);                                                                   \
   template MoveStats grid_to_particles(World<R>&, const ProjectionKernels<R>&, const MacGrid<R>&, const CutCells<R>&, \
-                                       double, const Vec3d&);
+                                       double, const Vec3d&, std::vector<float>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

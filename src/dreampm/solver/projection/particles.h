@@ -30,9 +30,9 @@ FlowSpeeds flow_speeds(const World<R>& world);
 /// Gives particles the velocity of the grid and its slope, and moves them by `dt` [s] through the
 /// velocities `moving`, by Ralston's third-order Runge-Kutta method whose first slope is the
 /// particle's own velocity (Ralston 1962). A particle that no known velocity is around keeps its
-/// own and falls by `kick` [m/s]. Colliders put particles out.
+/// own and falls by `kick` [m/s]. Colliders put particles out. `scratch`: memory to work in.
 template <class R>
 MoveStats grid_to_particles(World<R>& world, const ProjectionKernels<R>& kernels, const MacGrid<R>& grid,
-                            const CutCells<R>& cut, double dt, const Vec3d& kick);
+                            const CutCells<R>& cut, double dt, const Vec3d& kick, std::vector<float>& scratch);
 
 }  // namespace dreampm

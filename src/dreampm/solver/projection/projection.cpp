@@ -305,7 +305,7 @@ typename Projection<R>::Moved Projection<R>::advance(World<R>& world, const Step
   move_to_end(world, s.dt, true);
   wrap_bodies(world);
   if (bodies_.any()) cut_.see(world);
-  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, s.dt, s.gained);
+  const MoveStats move = grid_to_particles(world, kernels_, grid_, cut_, s.dt, s.gained, speeds_);
   if (!move.finite)
     throw NumericalFailure(
         fmt::format("step {} at t = {:.6g} s: a particle is no longer finite; lower time.cfl (now {})", world.step,

@@ -91,6 +91,7 @@ class Projection final : public Solver<R> {
   Regroup<R> regroup_;
   GridFields<R> spare_;
   std::vector<Collider> at_start_;  ///< of the step
+  std::vector<float> speeds_;
   int pressure_iterations_ = 0, density_iterations_ = 0, viscosity_iterations_ = 0;
 };
 

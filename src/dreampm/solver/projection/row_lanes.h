@@ -6,9 +6,6 @@
 
 #include "dreampm/math/scalar.h"
 
-// Functions here are always inlined: how vectors are passed does not matter.
-#pragma GCC diagnostic ignored "-Wpsabi"
-
 namespace dreampm {
 
 template <class R>

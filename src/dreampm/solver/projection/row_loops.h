@@ -33,7 +33,7 @@ struct RowLoops {
     return (S::load(q + face) - S::load(q + below)) * lightness(grid, a, face) * theta;
   }
 
-  static void free_velocities(const Grid& grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least) {
+  static void free_velocities(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t own = RowAround(grid.rows[n]).own;
 #pragma GCC unroll 3
@@ -49,7 +49,7 @@ struct RowLoops {
     }
   }
 
-  static void matrix(const Grid& grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to) {
+  static void matrix(Grid grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to) {
     for (std::size_t n = begin; n < end; ++n) {
       const RowAround at(grid.rows[n]);
       const S depth = S::load(grid.depth + at.own);
@@ -75,7 +75,7 @@ struct RowLoops {
     }
   }
 
-  static void apply_pressure(const Grid& grid, std::size_t begin, std::size_t end) {
+  static void apply_pressure(Grid grid, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
       const RowAround at(grid.rows[n]);
       const Mask liquid = S::load(grid.depth + at.own) > zero();
@@ -90,7 +90,7 @@ struct RowLoops {
     }
   }
 
-  static void extend(const Grid& grid, std::size_t begin, std::size_t end, int a, bool bring_free) {
+  static void extend(Grid grid, std::size_t begin, std::size_t end, int a, bool bring_free) {
     const R* const v = grid.velocity[a];
     // Faces between the walls, and those on them.
     Vec3i last = grid.high;
@@ -123,7 +123,7 @@ struct RowLoops {
     }
   }
 
-  static void move(const Grid& grid, std::size_t begin, std::size_t end, const R* displacement, R speed) {
+  static void move(Grid grid, std::size_t begin, std::size_t end, const R* displacement, R speed) {
     for (std::size_t n = begin; n < end; ++n) {
       const RowAround at(grid.rows[n]);
       const Mask liquid = S::load(grid.depth + at.own) > zero();

@@ -120,17 +120,21 @@ FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScal
         const std::size_t own = RowPlaces(rows[n]).own;
         for (std::size_t a = 0; a < 3; ++a) {
           const R gained = static_cast<R>(scale.kick[static_cast<int>(a)]);
-          R given = 0, projected = 0, lost = 0;
-          for (std::size_t c = own; c < own + row_cells; ++c) {
-            const auto [momentum, w] = grid.sums[a][c];
-            const R free = grid.free[a][c], velocity = grid.velocity[a][c];
-            if (!is_known(free) || !(w > R(0))) continue;
-            const R before = momentum / w, after = is_known(velocity) ? velocity : free;
-            given += momentum * before, projected += w * after * after;
-            lost += w * (before + after) * (before + gained - after);
+          // A sum for each lane: they go side by side.
+          R given[row_cells], projected[row_cells], lost[row_cells];
+          for (std::size_t l = 0; l < row_cells; ++l) {
+            const auto [momentum, weight] = grid.sums[a][own + l];
+            const R free = grid.free[a][own + l], velocity = grid.velocity[a][own + l];
+            const bool known = is_known(free) && weight > R(0);
+            const R before = momentum / (known ? weight : R(1)), after = is_known(velocity) ? velocity : free;
+            given[l] = known ? momentum * before : R(0);
+            projected[l] = known ? weight * after * after : R(0);
+            lost[l] = known ? weight * (before + after) * (before + gained - after) : R(0);
           }
-          sum.given += 0.5 * static_cast<double>(given), sum.projected += 0.5 * static_cast<double>(projected);
-          sum.lost += 0.5 * static_cast<double>(lost);
+          const auto sum_of = [](const R(&of)[row_cells]) {
+            return static_cast<double>(((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7])));
+          };
+          sum.given += 0.5 * sum_of(given), sum.projected += 0.5 * sum_of(projected), sum.lost += 0.5 * sum_of(lost);
         }
         // Trilinear weights keep places.
         double mass = 0, along = 0;
