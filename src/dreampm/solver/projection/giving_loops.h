@@ -37,7 +37,7 @@ template <class S, class Row>
 DM_FN void give_some(const BlockGiving<Scalar<S>>& block, std::size_t p, int n, GivenSums<Scalar<S>>& sums) {
   using R = Scalar<S>;
   constexpr int lanes = LaneTraits<S>::lanes;
-  const BlockColumns<R>& from = block.particles;
+  const BlockColumns<const R>& from = block.particles;
   const S half(R(0.5)), dx(block.dx), volume(block.volume);
   Vec3<S> u;
   for (int a = 0; a < 3; ++a) u[a] = Row::load(from.u[a] + p, n);

@@ -27,10 +27,10 @@ struct Beyond {
   double (*put_out)(const void* context, std::size_t particle, const R (&start)[3], R (&x)[3]);
 };
 
-/// Where the particles of a block lie, one set's.
-template <class R>
+/// Where the particles of a block lie, one set's; T: R, or const R where they stay as they are.
+template <class T>
 struct BlockColumns {
-  R *u[3], *own[3], *gradient[9];  ///< whole columns
+  T *u[3], *own[3], *gradient[9];  ///< whole columns
   std::size_t begin, end;
 };
 
@@ -70,7 +70,7 @@ struct BlockMove {
 /// What the particles of one block give to the grid.
 template <class R>
 struct BlockGiving {
-  BlockColumns<R> particles;
+  BlockColumns<const R> particles;
   R dx, volume;                ///< of a particle [cells]
   const std::size_t* columns;  ///< of Window<0>
   FaceSum<R>* sums[3];         ///< of faces, added to

@@ -65,7 +65,7 @@ DM_FN void alternate(const Eight<R>& even, const Eight<R>& odd, Eight<R>& to) {
 DM_FN bool is_even(const CellRows::Row& row, int color) { return ((row.first.x + row.first.y + color) & 1) == 0; }
 
 /// Half a sweep of Gauss and Seidel of one row: its cells of a color, which see only those of the
-/// other.
+/// other. These are written with the values that they have, while other threads may read them.
 template <class R>
 DM_FN void relax(const LevelRows<R>& level, const CellRows::Row& row, int color, Eight<R>& x, Eight<R>& b) {
   const std::size_t c = row_place(row.number);

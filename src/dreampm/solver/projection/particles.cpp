@@ -14,14 +14,12 @@ namespace {
 /// Particles are kept so far within walls [cells].
 constexpr double wall_gap = 1e-3;
 
-/// The particles of one set in one block.
-template <class R>
-BlockColumns<R> columns_of(const ParticleSet<R>& set, std::size_t b) {
-  BlockColumns<R> columns{{}, {}, {}, set.block_start[b], set.block_start[b + 1]};
-  // What gives to the grid leaves them as they are.
-  const auto data = [](const LargeVector<R>& column) { return const_cast<R*>(column.data()); };
-  for (std::size_t a = 0; a < 3; ++a) columns.u[a] = data(set.u[a]), columns.own[a] = data(set.own[a]);
-  for (std::size_t c = 0; c < 9; ++c) columns.gradient[c] = data(set.gradient[c]);
+/// The particles of one set in one block. T: R or const R, as the set is.
+template <class T, class Set>
+BlockColumns<T> columns_of(Set& set, std::size_t b) {
+  BlockColumns<T> columns{{}, {}, {}, set.block_start[b], set.block_start[b + 1]};
+  for (std::size_t a = 0; a < 3; ++a) columns.u[a] = set.u[a].data(), columns.own[a] = set.own[a].data();
+  for (std::size_t c = 0; c < 9; ++c) columns.gradient[c] = set.gradient[c].data();
   return columns;
 }
 
@@ -30,7 +28,7 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
                 MacGrid<R>& grid) {
   if (set.block_start[b] == set.block_start[b + 1]) return;
   const Window<0> window(grid.cells, world.particle_blocks[b]);
-  kernels.give({columns_of(set, b),
+  kernels.give({columns_of<const R>(set, b),
                 static_cast<R>(world.dx),
                 static_cast<R>(set.rest_volume / (world.dx * world.dx * world.dx)),
                 window.columns(),
@@ -79,12 +77,12 @@ double stop_at(const typename CutCells<R>::Rescue::Surface& surface, const Parti
 template <class R>
 class Anywhere {
  public:
-  Anywhere(const MacGrid<R>& grid, const CutCells<R>& cut, const World<R>& world, const ParticleSet<R>& set,
+  Anywhere(const MacGrid<R>& grid, const CutCells<R>& cut, const World<R>& world, ParticleSet<R>& set,
            std::size_t b, const Vec3i& first, double dt)
       : grid_(grid),
         put_out_(world, cut, world.particle_blocks[b], dt),
         set_(set),
-        columns_(columns_of(set, b)),
+        columns_(columns_of<R>(set, b)),
         first_(first),
         dx_(world.dx) {}
   Beyond<R> as_beyond() const {
@@ -143,12 +141,12 @@ class Anywhere {
 };
 
 template <class R>
-BlockMove take_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
+BlockMove take_block(const World<R>& world, ParticleSet<R>& set, std::size_t b,
                      const ProjectionKernels<R>& kernels, const MacGrid<R>& grid, const CutCells<R>& cut, double dt,
                      const Vec3d& kick) {
   const Window<reach_ahead> window(grid.cells, world.particle_blocks[b]);
   const Anywhere<R> anywhere(grid, cut, world, set, b, window.first(), dt);
-  BlockTaking<R> taking{columns_of(set, b),
+  BlockTaking<R> taking{columns_of<R>(set, b),
                         {},
                         {},
                         window.columns(),
