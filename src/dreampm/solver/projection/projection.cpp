@@ -307,7 +307,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   solids_to_grid(world, grid_);
   find_free_velocities(grid_, gained);
   mix_velocities(world, grid_, gained);
-  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick));
+  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * kick), gained);
   const ImpulseSum fields = apply_fields(world, grid_, kick);
   find_depths(grid_, dt / world.dx);
   leave_out_dry_solids(grid_);
