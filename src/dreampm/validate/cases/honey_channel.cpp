@@ -15,7 +15,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi, g = 9.81, gap = 0.1, nu = 0.28, density = 1000, area = 0.05 * 0.05;
 constexpr double tau = gap * gap / (pi * pi * nu), fastest = g * gap * gap / (8 * nu);
-constexpr double starting[] = {0.3, 1, 3, 8}, steady[] = {30, 56};  // times tau: looks
+constexpr double starting[] = {0.3, 1, 3, 8}, steady[] = {56};  // times tau: looks
 
 double speed(double y, double t) {
   double u = g / (2 * nu) * y * (gap - y);

@@ -135,11 +135,9 @@ void run(Trial& t) {
 }  // namespace rigid_float_case
 
 extern const Case rigid_float_projection;
-const Case rigid_float_projection{"rigid-float-projection",
-                                  "rigid boxes of three densities float at their draft, and rest, by the projection",
-                                  "Archimedes, exact",
-                                  true,
-                                  rigid_float_case::run,
-                                  8};
+const Case rigid_float_projection{
+    "rigid-float-projection", "rigid boxes of three densities float at their draft, and rest, by the projection",
+    "Archimedes, exact",      true,
+    rigid_float_case::run,    8};
 
 }  // namespace dreampm::validate::cases
