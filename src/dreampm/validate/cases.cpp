@@ -37,6 +37,7 @@ namespace dreampm::validate {
   X(still_shore)              \
   X(splash_volume)            \
   X(splash_volume_projection) \
+  X(splash_energy_projection) \
   X(vessels)                  \
   X(pool)                     \
   X(channel)                  \

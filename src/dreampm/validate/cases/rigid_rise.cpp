@@ -147,12 +147,11 @@ const Case rigid_rise{"rigid-rise",
                       200};
 
 extern const Case rigid_rise_projection;
-const Case rigid_rise_projection{
-    "rigid-rise-projection",
-    "a light ball rises in still water by the projection, whatever its steps are",
-    rigid_rise.source,
-    true,
-    rigid_rise_case::run_projection,
-    5};
+const Case rigid_rise_projection{"rigid-rise-projection",
+                                 "a light ball rises in still water by the projection, whatever its steps are",
+                                 rigid_rise.source,
+                                 true,
+                                 rigid_rise_case::run_projection,
+                                 5};
 
 }  // namespace dreampm::validate::cases
