@@ -1,5 +1,5 @@
-// A cube of water falls into a pool: what energy the splash keeps by the projection, beside explicit
-// steps.
+// A cube of water falls into a pool: what energy the splash keeps by the projection, beside
+// explicit steps.
 #include <algorithm>
 #include <cmath>
 
