@@ -138,6 +138,6 @@ extern const Case rigid_float_projection;
 const Case rigid_float_projection{
     "rigid-float-projection", "rigid boxes of three densities float at their draft, and rest, by the projection",
     "Archimedes, exact",      true,
-    rigid_float_case::run,    8};
+    rigid_float_case::run,    20};
 
 }  // namespace dreampm::validate::cases

@@ -44,7 +44,8 @@ double lost(const Splash& s, const Splash& other) {
 void run(Trial& t) {
   t.chose(
       "A cube of 16 cm falls by 10 cm into a pool of 48 x 48 x 12 cm. Energy is that of motion and height over water "
-      "at rest. The gate is a tenth of the energy at the start, at the worst frame (50 a second) of 0.8 s. Speeds of the projection lag half a step, which "
+      "at rest. The gate is a tenth of the energy at the start, at the worst frame (50 a second) of 0.8 s. Speeds of "
+      "the projection lag half a step, which "
       "counts while the cube falls.");
   const std::vector<std::string> fine{"space.spacing=0.0075"};
   const auto by = [&](std::vector<std::string> all) {
@@ -54,16 +55,18 @@ void run(Trial& t) {
   const std::string projection = "time.solver=projection";
   const Splash explicit_steps = by({}), two = by({projection}), one = by({projection, "time.cfl=1"}),
                damped = by({projection, "time.damping=2"});
-  Plot plot{"splash-energy-projection", "Energy of a cube of water that falls into a pool", "time  [s]",
-            "energy over that at rest / at the start", {}};
+  Plot plot{"splash-energy-projection",
+            "Energy of a cube of water that falls into a pool",
+            "time  [s]",
+            "energy over that at rest / at the start",
+            {}};
   const auto name = [](const char* who) { return fmt::format("{}: energy less than by explicit steps", who); };
   t.at_most(name("cfl 2"), lost(two, explicit_steps), 0.1, "%");
   t.at_most(name("cfl 1"), lost(one, explicit_steps), 0.1, "%");
   t.report("at the end, by explicit steps", explicit_steps.energy.back(), "%");
   t.report("at the end, cfl 2", two.energy.back(), "%");
   t.report("at the end, cfl 1", one.energy.back(), "%");
-  for (const char* who : {"cfl 2", "cfl 1"})
-    t.control("damped by 2/s, cfl 2", name(who), lost(damped, explicit_steps));
+  for (const char* who : {"cfl 2", "cfl 1"}) t.control("damped by 2/s, cfl 2", name(who), lost(damped, explicit_steps));
   plot.curves.push_back({"cfl 2", two.time, two.energy}), plot.curves.push_back({"cfl 1", one.time, one.energy});
   plot.curves.push_back({"explicit steps", explicit_steps.time, explicit_steps.energy, true});
   t.plot(std::move(plot));
