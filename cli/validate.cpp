@@ -17,7 +17,7 @@ struct ValidateArguments {
 
 void print_list() {
   for (const validate::Case* c : validate::all_cases())
-    fmt::print("{:<20}{}{}\n", c->name, c->about, c->quick ? "" : " (only with --full)");
+    fmt::print("{:<26}{}{}\n", c->name, c->about, c->quick ? "" : " (only with --full)");
 }
 
 /// The named cases in the order given, or all of the level. A case asked for by name runs at either

@@ -295,6 +295,20 @@ TEST(ProjectionPeriodic, ABoxThatIsFullStaysStill) {
   EXPECT_NEAR(middle_of(s, "water").y, 0.1, 1e-3);
 }
 
+TEST(ProjectionForces, DampingLeavesWaterItsWeight) {
+  // What is damped comes to rest where it floats without.
+  Box box;
+  box.time = ", fps: 24, damping: 5";
+  Simulation s = box_of(
+      water +
+          "bodies: {pool: {material: water, shape: {difference: [{box: {min: [0, 0, 0], max: [0.4, 0.2, 0.4]}}, {box: "
+          "{size: [0.2, 0.12, 0.2]}, center: [0.2, 0.2, 0.2]}]}, sample: {pattern: jitter}}}\nrigid: {box: {shape: "
+          "{box: {size: [0.2, 0.12, 0.2]}}, density: 499.1, position: [0.2, 0.2, 0.2], lock: [rx, ry, rz]}}\n",
+      box);
+  s.advance_to(2);
+  EXPECT_NEAR(s.collider("box").twist.center.y, 0.2, 1.5e-3);
+}
+
 TEST(ProjectionForces, DampingTakesItsShareOfAllMotion) {
   Box box;
   box.time = ", fps: 24, damping: 2", box.walls = "all: {type: slip}";

@@ -15,6 +15,7 @@ namespace dreampm::validate {
   X(sloshing_projection)      \
   X(taylor_green)             \
   X(honey_channel)            \
+  X(honey_channel_projection) \
   X(conservation)             \
   X(seed)                     \
   X(elliptical_drop)          \
@@ -36,16 +37,22 @@ namespace dreampm::validate {
   X(still_shore)              \
   X(splash_volume)            \
   X(splash_volume_projection) \
+  X(splash_energy_projection) \
   X(vessels)                  \
   X(pool)                     \
   X(channel)                  \
   X(layers)                   \
   X(floating)                 \
+  X(floating_projection)      \
   X(rigid_rise)               \
+  X(rigid_rise_projection)    \
   X(rigid_draft)              \
   X(rigid_upright)            \
+  X(rigid_float_projection)   \
   X(rigid_heave)              \
+  X(rigid_heave_projection)   \
   X(rigid_sphere)             \
+  X(rigid_sphere_projection)  \
   X(rigid_momentum)           \
   X(rigid_soil)               \
   X(rigid_push)               \

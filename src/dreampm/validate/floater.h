@@ -27,7 +27,8 @@ struct FloaterSetUp {
   double below = 0.06;   ///< how far the center of the box lies over the floor, less `depth`, downwards
   double tilt = 0;       ///< of the box about the z axis [degrees]
   double dx = 0.02;      ///< of a cell
-  std::string extra{};   ///< more keys of the box, each after a comma
+  bool projection = false;
+  std::string extra{};  ///< more keys of the box, each after a comma
   std::vector<std::string> overrides{};
 };
 
@@ -37,13 +38,15 @@ class Floater {
 
   Floater(Trial& trial, const FloaterSetUp& s)
       : set_up(s),
-        run(trial, "rigid-float", with_sizes(s)),
+        run(trial, "rigid-float", s.projection ? by_projection("water", with_sizes(s)) : with_sizes(s)),
         water_volume(static_cast<double>(run.world.sets[0].rest_volume) * static_cast<double>(run.seeds[0].size())) {
     const Hydrostatic rest(run.world.sets[0].values, g, s.depth);
-    rest.move(run.seeds[0]);
-    move_body(run.world, 0, {0, rest.pressed(s.depth) - s.depth, 0});
+    if (run.compresses()) {
+      rest.move(run.seeds[0]);
+      move_body(run.world, 0, {0, rest.pressed(s.depth) - s.depth, 0});
+    }
     run.begin();
-    rest.press(run.world);
+    if (run.compresses()) rest.press(run.world);
   }
 
   const Collider& body() { return run.world.colliders.at(0); }

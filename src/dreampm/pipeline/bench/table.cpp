@@ -188,7 +188,7 @@ void Table::frames() {
 
 void Table::projection() {
   StepBenchOptions options;
-  options.cells = shrunk(million), options.threads = 2;
+  options.cells = shrunk(million), options.threads = 2, options.isa = widest_;
   options.windows = options_.windows, options.window_seconds = options_.window_seconds;
   for (BenchRow& row : bench_projection(options)) add(std::move(row));
 }

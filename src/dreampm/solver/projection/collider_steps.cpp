@@ -28,8 +28,8 @@ void free_bodies(World<R>& world, const Vec3d& gained, double kick, bool turn) {
   }
 }
 
-#define DM_INSTANTIATE(R)                                  \
-  template void move_to_end(World<R>&, double, bool);      \
+#define DM_INSTANTIATE(R)                             \
+  template void move_to_end(World<R>&, double, bool); \
   template void free_bodies(World<R>&, const Vec3d&, double, bool);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -90,11 +90,14 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick) {
 }
 
 template <class R>
-void damp(MacGrid<R>& grid, double part) {
-  for (auto& field : grid.free)
+void damp(MacGrid<R>& grid, double part, const Vec3d& gained) {
+  for (int axis = 0; axis < 3; ++axis) {
+    auto& field = grid.free[static_cast<std::size_t>(axis)];
+    const R given = static_cast<R>(gained[axis]);
     parallel_for(field.size(), 1 << 14, [&](std::size_t f) {
-      if (is_known(field[f])) field[f] *= static_cast<R>(part);
+      if (is_known(field[f])) field[f] = given + (field[f] - given) * static_cast<R>(part);
     });
+  }
 }
 
 template <class R>
@@ -119,8 +122,8 @@ void slow_along_walls(MacGrid<R>& grid, const std::array<bool, 6>& walls, const 
   for (auto& f : grid.free) grid.wrap(f);
 }
 
-template void damp(MacGrid<float>&, double);
-template void damp(MacGrid<double>&, double);
+template void damp(MacGrid<float>&, double, const Vec3d&);
+template void damp(MacGrid<double>&, double, const Vec3d&);
 template void slow_along_walls(MacGrid<float>&, const std::array<bool, 6>&, const SkinFriction&);
 template void slow_along_walls(MacGrid<double>&, const std::array<bool, 6>&, const SkinFriction&);
 template ImpulseSum apply_fields(const World<float>&, MacGrid<float>&, double);

@@ -11,9 +11,9 @@ namespace dreampm {
 template <class R>
 ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick);
 
-/// Leaves that part of `free`.
+/// Leaves that part of what `free` was before gravity gave `gained`: still water keeps its weight.
 template <class R>
-void damp(MacGrid<R>& grid, double part);
+void damp(MacGrid<R>& grid, double part, const Vec3d& gained);
 
 /// What a boundary layer is made of.
 struct SkinFriction {

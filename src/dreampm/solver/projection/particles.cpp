@@ -77,8 +77,8 @@ double stop_at(const typename CutCells<R>::Rescue::Surface& surface, const Parti
 template <class R>
 class Anywhere {
  public:
-  Anywhere(const MacGrid<R>& grid, const CutCells<R>& cut, const World<R>& world, ParticleSet<R>& set,
-           std::size_t b, const Vec3i& first, double dt)
+  Anywhere(const MacGrid<R>& grid, const CutCells<R>& cut, const World<R>& world, ParticleSet<R>& set, std::size_t b,
+           const Vec3i& first, double dt)
       : grid_(grid),
         put_out_(world, cut, world.particle_blocks[b], dt),
         set_(set),
@@ -141,21 +141,12 @@ class Anywhere {
 };
 
 template <class R>
-BlockMove take_block(const World<R>& world, ParticleSet<R>& set, std::size_t b,
-                     const ProjectionKernels<R>& kernels, const MacGrid<R>& grid, const CutCells<R>& cut, double dt,
-                     const Vec3d& kick) {
+BlockMove take_block(const World<R>& world, ParticleSet<R>& set, std::size_t b, const ProjectionKernels<R>& kernels,
+                     const MacGrid<R>& grid, const CutCells<R>& cut, double dt, const Vec3d& kick) {
   const Window<reach_ahead> window(grid.cells, world.particle_blocks[b]);
   const Anywhere<R> anywhere(grid, cut, world, set, b, window.first(), dt);
-  BlockTaking<R> taking{columns_of<R>(set, b),
-                        {},
-                        {},
-                        window.columns(),
-                        static_cast<R>(1 / world.dx),
-                        static_cast<R>(dt / world.dx),
-                        {},
-                        {},
-                        static_cast<Vec3<R>>(kick),
-                        anywhere.as_beyond()};
+  BlockTaking<R> taking{columns_of<R>(set, b),         {}, {}, window.columns(),           static_cast<R>(1 / world.dx),
+                        static_cast<R>(dt / world.dx), {}, {}, static_cast<Vec3<R>>(kick), anywhere.as_beyond()};
   for (int a = 0; a < 3; ++a) {
     const auto axis = static_cast<std::size_t>(a);
     taking.velocity[a] = grid.velocity[axis].data(), taking.moving[a] = grid.moving[axis].data();

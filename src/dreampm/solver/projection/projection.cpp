@@ -269,7 +269,7 @@ ImpulseSum Projection<R>::gather(World<R>& world, const Step& s) {
   find_depths(grid_, s.dt / world.dx);
   leave_out_dry_solids(world, grid_);
   grains_.mix(world, grid_, s.kick);
-  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * s.kick));
+  if (world.settings.damping > 0) damp(grid_, std::exp(-world.settings.damping * s.kick), s.gained);
   return apply_fields(world, grid_, s.kick);
 }
 

@@ -193,6 +193,53 @@ void run(Trial& t) {
            level("gate of the 1400", 0, time, 1)}});
 }
 
+/// The cube lies at its draft at the start, and the water is around it.
+std::vector<std::string> at_its_draft(double density) {
+  const std::string cube = fmt::format("box: {{size: [0.3, 0.3, 0.3]}}, center: [0.4, {}, 0.4]",
+                                       0.4 + side * (0.5 - density / water_density));
+  return {"bodies.cube.shape={" + cube + "}",
+          "bodies.water.shape={difference: [{box: {min: [0, 0, 0], max: [0.8, 0.4, 0.8]}}, {" + cube + "}]}"};
+}
+
+void run_projection(Trial& t) {
+  t.chose(
+      "The cube of 900 kg/m^3 is let go at its draft, that of 1200 with half its height under water. The first is "
+      "judged by its worst frame (ten a second), the second by its worst from 1.5 s on, when it lies. The volume of "
+      "the "
+      "water follows from its mean height, with a flat surface around the cube as it lies.");
+  const double time = t.full() ? 20 : 4, light = 900, heavy = 1200, lies = 1.5;
+  const auto floating_at = [&](double density, double end, double packed = 1) {
+    return rest(t, density, end, Basin::filled, by_projection("water", at_its_draft(density)), packed);
+  };
+  const Rest jelly = floating_at(light, time), wood = floating_at(800, 2),
+             stone = rest(t, heavy, time, Basin::filled, by_projection("water"));
+  const double draft = side * light / water_density;
+  const std::string floats = fmt::format("draft of a cube of {} kg/m^3, farthest off within {} s", light, time),
+                    volume = fmt::format("volume of the water around it, farthest off from {} to {} s", settled, time),
+                    lower = fmt::format("a cube of {} kg/m^3, lower face above the floor at most from {} to {} s",
+                                        heavy, lies, time);
+  t.at_most(floats, farthest(jelly.draft, draft) / jelly.dx, 0.5, "cells");
+  t.report("its mean over the last quarter, off by", (late(jelly.draft) - draft) / jelly.dx, "cells");
+  t.at_most(volume, change_of_volume(jelly), 0.01, "%");
+  const auto down = std::lower_bound(stone.time.begin(), stone.time.end(), lies - 1e-6) - stone.time.begin();
+  t.at_most(lower, *std::max_element(stone.bottom.begin() + down, stone.bottom.end()) / stone.dx, 0.25, "cells");
+  t.report("volume of the water around it, farthest off in that time",
+           farthest({stone.volume.begin() + down, stone.volume.end()}, 0), "%");
+  t.control("a cube of 800 kg/m^3 taken for one of 900, 2 s", floats, farthest(wood.draft, draft) / wood.dx);
+  t.control("a cube of 800 kg/m^3 taken for one of 1200, 2 s", lower, lies_at(wood) / wood.dx);
+  t.control("3 % too much water on its points, 1.5 s", volume, change_of_volume(floating_at(light, 1.5, 1.03)));
+  const auto rest_of = [&](double density) {
+    return level(fmt::format("{} kg/m^3, at its draft", density), 0, time,
+                 (0.4 - side * density / water_density) / jelly.dx);
+  };
+  t.plot({"floating-projection",
+          "Lower face of an elastic cube of 6 cells in water, by the projection",
+          "time  [s]",
+          "above the floor  [cells]",
+          {course_of(jelly, "900 kg/m^3"), course_of(stone, "1200 kg/m^3"), course_of(wood, "800 kg/m^3"),
+           rest_of(light), rest_of(800)}});
+}
+
 }  // namespace
 }  // namespace floating_case
 
@@ -204,5 +251,15 @@ const Case floating{"floating",
                     floating_case::run,
                     22,
                     260};
+
+extern const Case floating_projection;
+const Case floating_projection{
+    "floating-projection",
+    "an elastic cube of 900 kg/m^3 floats at its draft in projected water, one of 1200 sinks",
+    "Archimedes, exact",
+    true,
+    floating_case::run_projection,
+    3,
+    8};
 
 }  // namespace dreampm::validate::cases

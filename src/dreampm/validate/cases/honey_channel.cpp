@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/validation_run.h"
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi, g = 9.81, gap = 0.1, nu = 0.28, density = 1000, area = 0.05 * 0.05;
 constexpr double tau = gap * gap / (pi * pi * nu), fastest = g * gap * gap / (8 * nu);
-constexpr double looks[] = {0.3, 1, 3, 8};  // times tau
+constexpr double starting[] = {0.3, 1, 3, 8}, steady[] = {56};  // times tau: looks
 
 double speed(double y, double t) {
   double u = g / (2 * nu) * y * (gap - y);
@@ -55,7 +56,8 @@ struct Flow {
   std::uint64_t steps = 0;
 };
 
-Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plot = nullptr) {
+Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plot = nullptr,
+             std::span<const double> looks = starting) {
   ValidationRun<float> run(t, "honey-channel", overrides);
   run.begin();
   Flow flow;
@@ -120,6 +122,39 @@ void run(Trial& t) {
   t.plot(std::move(plot));
 }
 
+void run_projection(Trial& t) {
+  t.chose(
+      "280 Pa s, 33 times honey; 16 cells from plate to plate. Once in steps as long as frames, 1.4 H^2/(pi^2 nu), "
+      "until the flow is steady; then in steps of a hundredth of those, through its start. What gravity gives in a "
+      "long "
+      "step is more than the flow is fast, and its heat counts from there: it is judged in short ones. The drag of "
+      "plates is not in the projection's ledger.");
+  Plot plot{"honey-channel-projection",
+            "Start of a viscous flow between plates, by the projection",
+            "place between the plates",
+            "speed / fastest",
+            {}};
+  const auto by = [](const char* dt, std::vector<std::string> more = {}) {
+    more.push_back(std::string("time.dt=") + dt);
+    return by_projection("liquid", more);
+  };
+  const char *const frame = "5.0e-3", *const part = "5.0e-5";
+  const Flow small = flow_of(t, by(part), &plot), large = flow_of(t, by(frame), &plot, steady);
+  const char *const end = "steps of 5 ms: error of the steady profile, of the fastest speed",
+                    *const start = "steps of 0.05 ms: error of the profile, of the fastest speed",
+                    *const warmth = "steps of 0.05 ms: heat of viscosity over the exact, minus 1";
+  t.at_most(end, large.error, 0.01, "%");
+  t.report("steps of 5 ms", static_cast<double>(large.steps));
+  t.at_most(start, small.error, 0.01, "%");
+  t.at_most(warmth, std::abs(small.heat - 1), 0.02, "%");
+  t.report("steps of 0.05 ms", static_cast<double>(small.steps));
+  const std::vector<std::string> thin{"materials.liquid.viscosity=271.6"};
+  t.control("3 % less viscosity", end, flow_of(t, by(frame, thin), nullptr, steady).error);
+  const Flow fast = flow_of(t, by(part, thin));
+  t.control("3 % less viscosity", start, fast.error), t.control("3 % less viscosity", warmth, std::abs(fast.heat - 1));
+  t.plot(std::move(plot));
+}
+
 }  // namespace
 }  // namespace honey_channel_case
 
@@ -131,5 +166,14 @@ const Case honey_channel{"honey-channel",
                          honey_channel_case::run,
                          5,
                          5};
+
+extern const Case honey_channel_projection;
+const Case honey_channel_projection{
+    "honey-channel-projection",
+    "a very viscous liquid starts to flow between two plates by the projection, in long steps and in short ones",
+    honey_channel.source,
+    true,
+    honey_channel_case::run_projection,
+    5};
 
 }  // namespace dreampm::validate::cases
