@@ -307,7 +307,7 @@ void CutCells<R>::Rescue::put_out(const Vec3d& from, Vec3d& at, Surface& met) co
     return;
   }
   const Vec3d back = from - at;
-  met.normal = back / length(back);
+  if (const double gone = length(back); gone > 0) met.normal = back / gone;
   at = from;
 }
 
