@@ -1,4 +1,4 @@
-// Four numbers in a register, such as those of a node: compilers do not find such vectors by
+// Some numbers in a register, such as the four of a node: compilers do not find such vectors by
 // themselves in long loops. The operations on each number stay the same, and products and sums are
 // not fused, so the results are the same bits.
 #pragma once
@@ -6,13 +6,17 @@
 
 namespace dreampm {
 
-template <class R>
-struct FourOf {
-  using Type [[gnu::vector_size(4 * sizeof(R))]] = R;
+template <class R, int count>
+struct NumbersOf {
+  using Type [[gnu::vector_size(count * sizeof(R))]] = R;
 };
 /// Operators work number by number (an extension that g++ and clang share).
 template <class R>
-using Four = typename FourOf<R>::Type;
+using Two = typename NumbersOf<R, 2>::Type;
+template <class R>
+using Four = typename NumbersOf<R, 4>::Type;
+template <class R>
+using Eight = typename NumbersOf<R, 8>::Type;
 
 /// Of four numbers that follow one another, such as the members of an object.
 template <class R>

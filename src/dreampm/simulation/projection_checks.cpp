@@ -17,7 +17,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
   const scene::Material* liquid = nullptr;
   for (const scene::Material& m : scene.materials) {
     const std::string at = place(file, m.mark);
-    if (m.info->name == "newtonian" && m.values["tension"] != 0)
+    if (is_projected(m.info->name) && m.values["tension"] != 0)
       out.push_back(
           fmt::format("{}: error: material {} has tension, which time.solver: projection does not have; take "
                       "the key out",
@@ -27,7 +27,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
-    if (m.info->name != "newtonian") continue;
+    if (!is_projected(m.info->name)) continue;
     if (!liquid) liquid = &m;
     for (const char* value : {"density", "viscosity"})
       if (m.values[value] != liquid->values[value])

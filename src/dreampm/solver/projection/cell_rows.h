@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "dreampm/math/scalar.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm {
@@ -130,6 +131,19 @@ class CellRows {
   std::vector<Copy> copies_;
   Vec3i period_;
   std::size_t row_count_ = 0;
+};
+
+/// The place in an array of the first cell of a row.
+constexpr std::size_t row_place(std::uint32_t number) { return std::size_t{number} * row_cells; }
+
+/// The places of the first cell of a row and of those beside it, on the low and high side of an
+/// axis.
+struct RowPlaces {
+  std::size_t own, low[3], high[3];
+  DM_FN explicit RowPlaces(const CellRows::Row& row)
+      : own(row_place(row.number)),
+        low{row_place(row.x_low), row_place(row.y_low), own - 1},
+        high{row_place(row.x_high), row_place(row.y_high), own + 1} {}
 };
 
 }  // namespace dreampm

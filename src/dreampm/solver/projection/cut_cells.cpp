@@ -22,6 +22,35 @@ constexpr double least_gap = 2e-3;
 /// They go beside colliders in pieces no longer than this [cells], or than the way to the nearest.
 constexpr double longest_piece = 0.4;
 
+/// Distances from colliders [cells] at places that are half a cell apart, for edges and corners of
+/// colliders: those of a block, and beside it as far as the kernels of its cells reach.
+class NodeDistances {
+ public:
+  explicit NodeDistances(const ColliderView& view) {
+    std::array<Vec3d, layer> places;
+    std::array<double, layer> found;
+    for (int i = 0; i < along; ++i) {
+      for (int n = 0; n < layer; ++n)
+        places[static_cast<std::size_t>(n)] =
+            Vec3d{static_cast<double>(i - halo), static_cast<double>(n / along - halo),
+                  static_cast<double>(n % along - halo)} *
+            0.5;
+      view.nearest(places, found.data());
+      std::copy(found.begin(), found.end(), at_.begin() + i * layer);
+    }
+  }
+  /// `place`: from the block's first node, in half cells.
+  double operator()(const Vec3i& place) const {
+    const Vec3i n = place + Vec3i{halo, halo, halo};
+    return static_cast<double>(at_[static_cast<std::size_t>(n.x * layer + n.y * along + n.z)]);
+  }
+  double least() const { return static_cast<double>(*std::min_element(at_.begin(), at_.end())); }
+
+ private:
+  static constexpr int halo = 1, along = 2 * block_width + 1 + 2 * halo, layer = along * along;
+  std::array<float, along * layer> at_;
+};
+
 /// The part of a sample's surroundings that is open, by the distance at its middle from a surface,
 /// which changes by `width` across them.
 double open_part(double distance, double width) {
@@ -82,7 +111,6 @@ struct FacePart {
   double open = 1, along = 0.5, up = 0.5;
 };
 /// `d`: of places in half cells.
-template <class NodeDistances>
 FacePart face_part(const NodeDistances& d, const Vec3i& low, int axis) {
   Vec3i along{}, up{};
   along[(axis + 1) % 3] = 1, up[(axis + 2) % 3] = 1;
@@ -100,7 +128,6 @@ FacePart face_part(const NodeDistances& d, const Vec3i& low, int axis) {
 }
 
 /// What colliders fill of a cell, with its moment about the cell's low corner [cells].
-template <class NodeDistances>
 ClosedCube filled_part(const NodeDistances& d, const Vec3i& low) {
   ClosedCube filled;
   for (int n = 0; n < 8; ++n) {
@@ -114,7 +141,6 @@ ClosedCube filled_part(const NodeDistances& d, const Vec3i& low) {
 }
 
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
-template <class NodeDistances>
 double open_kernel(const NodeDistances& d, const Vec3i& low) {
   constexpr int nodes = 5, samples = 8;  // along an axis: two samples between two nodes
   // Axis by axis: [x][y][sample of z], [x][sample of y][sample of z].
@@ -153,22 +179,6 @@ double open_kernel(const NodeDistances& d, const Vec3i& low) {
 }  // namespace
 
 template <class R>
-CutCells<R>::NodeDistances::NodeDistances(const ColliderView& view) {
-  constexpr int layer = nodes_along * nodes_along;
-  std::array<Vec3d, layer> places;
-  std::array<double, layer> found;
-  for (int i = 0; i < nodes_along; ++i) {
-    for (int n = 0; n < layer; ++n)
-      places[static_cast<std::size_t>(n)] =
-          Vec3d{static_cast<double>(i - node_halo), static_cast<double>(n / nodes_along - node_halo),
-                static_cast<double>(n % nodes_along - node_halo)} *
-          0.5;
-    view.nearest(places, found.data());
-    std::copy(found.begin(), found.end(), at.begin() + i * layer);
-  }
-}
-
-template <class R>
 Vec3d CutCells<R>::middle_of_closed(const Block& cut, std::size_t axis, std::size_t n) {
   Vec3d middle{};
   middle[static_cast<int>(axis + 1) % 3] = static_cast<double>(cut.along[axis][n]);
@@ -183,7 +193,7 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   const NodeDistances d(view);
   // A distance changes by no more than the way: no surface is near where all nodes are a cell's
   // diagonal away.
-  if (*std::min_element(d.at.begin(), d.at.end()) > 1.8f) return nullptr;
+  if (d.least() > 1.8) return nullptr;
   auto cut = std::make_unique<Block>();
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
@@ -285,7 +295,7 @@ void CutCells<R>::cut(const World<R>& world, MacGrid<R>& grid) {
 }
 
 template <class R>
-CutCells<R>::Rescue::Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt)
+CutCells<R>::Collisions::Collisions(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt)
     : block_(static_cast<Vec3d>(block * block_width)), way_(dt / world.dx) {
   if (!cells.any()) return;
   // A particle goes a block on at most, and twice as far in a step that is sorted twice.
@@ -295,7 +305,7 @@ CutCells<R>::Rescue::Rescue(const World<R>& world, const CutCells& cells, const 
 }
 
 template <class R>
-void CutCells<R>::Rescue::put_out(const Vec3d& from, Vec3d& at, Surface& met) const {
+void CutCells<R>::Collisions::put_out(const Vec3d& from, Vec3d& at, Surface& met) const {
   const ColliderDistance found = view_->nearest_exposed(at, least_gap);
   if (!(found.distance < least_gap / 2)) return;
   met.normal = found.normal, met.velocity = view_->velocity(view_->nearest_collider(at), at);
@@ -312,8 +322,8 @@ void CutCells<R>::Rescue::put_out(const Vec3d& from, Vec3d& at, Surface& met) co
 }
 
 template <class R>
-typename CutCells<R>::Rescue::Surface CutCells<R>::Rescue::operator()(const Vec3i& first, const Vec3<R>& from,
-                                                                      Vec3<R>& x) const {
+typename CutCells<R>::Collisions::Surface CutCells<R>::Collisions::operator()(const Vec3i& first, const Vec3<R>& from,
+                                                                              Vec3<R>& x) const {
   const Vec3d origin = block_ - static_cast<Vec3d>(first), end = static_cast<Vec3d>(x) - origin;
   Surface met{};
   Vec3d at = static_cast<Vec3d>(from) - origin, way = end - at;

@@ -30,8 +30,8 @@ class CutCells {
   /// Once rigid bodies have other velocities: writes those of the faces that colliders close in
   /// part.
   void find_velocities(const World<R>& world, MacGrid<R>& grid) const;
-  /// Takes the colliders as they stand now, for Rescue; forgets what it knows of blocks near those
-  /// that moved.
+  /// Takes the colliders as they stand now, for Collisions; forgets what it knows of blocks near
+  /// those that moved.
   void see(const World<R>& world);
   /// Whether there are colliders.
   bool any() const { return !placed_.empty(); }
@@ -89,10 +89,10 @@ class CutCells {
   }
 
   /// Moves the particles of one block of particles along colliders instead of into them.
-  class Rescue {
+  class Collisions {
    public:
     /// `dt`: of the step [s].
-    Rescue(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt);
+    Collisions(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt);
     /// Whether a collider is near at all.
     bool is_needed() const { return view_.has_value(); }
     /// What a particle came to last.
@@ -117,20 +117,6 @@ class CutCells {
   };
 
  private:
-  /// Places are half a cell apart, for edges and corners of colliders: those of a block, and beside
-  /// it as far as the kernels of its cells reach.
-  static constexpr int node_halo = 1, nodes_along = 2 * block_width + 1 + 2 * node_halo;
-  /// Distances from colliders there [cells].
-  struct NodeDistances {
-    std::array<float, nodes_along * nodes_along * nodes_along> at;
-    /// `place`: from the block's first node, in half cells.
-    double operator()(const Vec3i& place) const {
-      const Vec3i n = place + Vec3i{node_halo, node_halo, node_halo};
-      return static_cast<double>(at[static_cast<std::size_t>((n.x * nodes_along + n.y) * nodes_along + n.z)]);
-    }
-    explicit NodeDistances(const ColliderView& view);
-  };
-
   /// Of the 64 cells of a block that a collider cuts or fills.
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces

@@ -1,6 +1,7 @@
 // What the particles of a block give to the staggered grid, over any lane type. The sums are made
 // close together, and added to the grid's in the end.
 #pragma once
+#include "dreampm/math/four.h"
 #include "dreampm/solver/projection/kernels.h"
 #include "dreampm/solver/projection/particle_lanes.h"
 #include "dreampm/state/grid.h"
@@ -82,15 +83,7 @@ DM_FN void give_some(const BlockGiving<Scalar<S>>& block, std::size_t p, int n, 
   }
 }
 
-/// Two numbers that follow one another.
-template <class R>
-struct TwoOf {
-  using Type [[gnu::vector_size(2 * sizeof(R))]] = R;
-};
-template <class R>
-using Two = typename TwoOf<R>::Type;
-
-/// Adds to two of them.
+/// Adds to two numbers that follow one another.
 template <class R>
 DM_FN void add_two(const Two<R>& a, R* to) {
   Two<R> sum;

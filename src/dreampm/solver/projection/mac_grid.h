@@ -15,11 +15,13 @@
 
 namespace dreampm {
 
-/// Whether the particles of a set are moved by the projection: others go by explicit steps beside
+/// Whether matter of that type is moved by the projection.
+inline bool is_projected(std::string_view material) { return material == "newtonian"; }
+/// Whether the particles of a set are: others go by explicit steps beside
 /// it (solver/projection/solids.h).
 template <class R>
 bool is_projected(const ParticleSet<R>& set) {
-  return set.material == "newtonian";
+  return is_projected(set.material);
 }
 
 /// A set of its liquid, of which all are alike; null where there is none.
@@ -134,19 +136,6 @@ inline Vec3d face_middle(int axis, bool high) {
   middle[axis] = high ? 1 : 0;
   return middle;
 }
-
-/// From a cell's place to that of its neighbors on the low and high side of an axis, within a row.
-struct RowPlaces {
-  std::size_t own;
-  std::array<std::size_t, 3> low, high;
-  explicit RowPlaces(const CellRows::Row& row)
-      : own(at(row.number)),
-        low{at(row.x_low), at(row.y_low), own - 1},
-        high{at(row.x_high), at(row.y_high), own + 1} {}
-
- private:
-  static std::size_t at(std::uint32_t number) { return std::size_t{number} * row_cells; }
-};
 
 /// Calls body(row, places) for all rows, in parallel.
 template <class Body>

@@ -68,22 +68,6 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
   }
 }
 
-/// What of faces behind walls is along them becomes that of the faces before: particles at a wall
-/// read behind it.
-template <class R>
-void mirror_along_walls(const MacGrid<R>& grid, std::array<LargeVector<R>, 3>& faces) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (static_cast<int>(a) == axis) continue;
-      R* const v = faces[a].data();
-      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t) {
-        if (behind < 2 * row_cells) return;  // no row there
-        std::copy_n(v + before, static_cast<std::size_t>(count), v + behind);
-      });
-    }
-  for (auto& f : faces) grid.wrap(f);
-}
-
 /// By sets of a world and their particles [m/s]: what a pressure that lasts gives them in a step.
 /// Explicit steps spread it over their time, where given at once it would tear them, or throw them
 /// up to fall again; and take it out at the end, so that it changes no momentum.

@@ -1,17 +1,10 @@
 // The loops of the multigrid over rows of eight cells, each a vector of eight numbers.
 #pragma once
+#include "dreampm/math/four.h"
 #include "dreampm/math/scalar.h"
 #include "dreampm/solver/projection/kernels.h"
 
 namespace dreampm {
-
-template <class R>
-struct EightOf {
-  using Type [[gnu::vector_size(8 * sizeof(R))]] = R;
-};
-/// Operators work number by number, as those of Four.
-template <class R>
-using Eight = typename EightOf<R>::Type;
 
 template <class R>
 DM_FN void load_eight(const R* from, Eight<R>& to) {
@@ -30,13 +23,11 @@ DM_FN double sum_of_eight(const Eight<double>& v) {
   return ((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7]));
 }
 
-constexpr std::size_t row_place(std::uint32_t row) { return std::size_t{row} * row_cells; }
-
 /// The couplings of a row's cells times the values beside them.
 template <class R>
 DM_FN void neighbors_of(const LevelRows<R>& level, const R* x, const CellRows::Row& row, Eight<R>& sum) {
-  const std::size_t c = row_place(row.number), xl = row_place(row.x_low), xh = row_place(row.x_high),
-                    yl = row_place(row.y_low), yh = row_place(row.y_high);
+  const RowPlaces at(row);
+  const std::size_t c = at.own;
   const R *ax = level.low[0], *ay = level.low[1], *az = level.low[2];
   const auto product = [](const R* coupling, const R* value, Eight<R>& to) __attribute__((always_inline)) {
     Eight<R> v;
@@ -44,10 +35,10 @@ DM_FN void neighbors_of(const LevelRows<R>& level, const R* x, const CellRows::R
     to *= v;
   };
   Eight<R> part;
-  product(ax + c, x + xl, sum);
-  product(ax + xh, x + xh, part), sum += part;
-  product(ay + c, x + yl, part), sum += part;
-  product(ay + yh, x + yh, part), sum += part;
+  product(ax + c, x + at.low[0], sum);
+  product(ax + at.high[0], x + at.high[0], part), sum += part;
+  product(ay + c, x + at.low[1], part), sum += part;
+  product(ay + at.high[1], x + at.high[1], part), sum += part;
   // Out of the row itself: a vector that begins in the row before, which may have just been
   // written, would have to wait until that is in memory.
   Eight<R> own, before = Eight<R>{} + x[c - 1], after = Eight<R>{} + x[c + row_cells], coupling;

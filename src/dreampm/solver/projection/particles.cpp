@@ -42,7 +42,7 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
 /// falls on and on. Between two surfaces it becomes as slow as it went. Returns the energy that is
 /// lost [J].
 template <class R>
-double stop_at(const typename CutCells<R>::Rescue::Surface& surface, const ParticleSet<R>& set, double dx,
+double stop_at(const typename CutCells<R>::Collisions::Surface& surface, const ParticleSet<R>& set, double dx,
                const BlockColumns<R>& columns, std::size_t p) {
   const Vec3d& normal = surface.normal;
   Vec3d v;
@@ -80,7 +80,7 @@ class Anywhere {
   Anywhere(const MacGrid<R>& grid, const CutCells<R>& cut, const World<R>& world, ParticleSet<R>& set, std::size_t b,
            const Vec3i& first, double dt)
       : grid_(grid),
-        put_out_(world, cut, world.particle_blocks[b], dt),
+        collisions_(world, cut, world.particle_blocks[b], dt),
         set_(set),
         columns_(columns_of<R>(set, b)),
         first_(first),
@@ -91,7 +91,7 @@ class Anywhere {
             [](const void* context, const R(&x)[3], R(&found)[3][4]) {
               static_cast<const Anywhere*>(context)->slope(x, found);
             },
-            put_out_.is_needed() ? &put_out : nullptr};
+            collisions_.is_needed() ? &put_out : nullptr};
   }
 
  private:
@@ -115,7 +115,7 @@ class Anywhere {
   static double put_out(const void* context, std::size_t particle, const R (&start)[3], R (&x)[3]) {
     const auto& self = *static_cast<const Anywhere*>(context);
     Vec3<R> at{x[0], x[1], x[2]};
-    const auto surface = self.put_out_(self.first_, {start[0], start[1], start[2]}, at);
+    const auto surface = self.collisions_(self.first_, {start[0], start[1], start[2]}, at);
     if (surface.normal == Vec3d{}) return 0;
     for (int a = 0; a < 3; ++a) x[a] = at[a];
     return stop_at<R>(surface, self.set_, self.dx_, self.columns_, particle);
@@ -133,7 +133,7 @@ class Anywhere {
   }
 
   const MacGrid<R>& grid_;
-  const typename CutCells<R>::Rescue put_out_;
+  const typename CutCells<R>::Collisions collisions_;
   const ParticleSet<R>& set_;
   const BlockColumns<R> columns_;
   const Vec3i first_;

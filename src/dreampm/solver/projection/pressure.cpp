@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dreampm/physics/projection/surface.h"
+#include "dreampm/solver/projection/grains.h"
 #include "dreampm/solver/projection/wall_images.h"
 
 namespace dreampm {
@@ -14,7 +15,7 @@ using Row = CellRows::Row;
 /// What a field q of cells takes from the velocity of a face.
 template <class R>
 R slope_at(const MacGrid<R>& grid, const R* q, std::size_t axis, std::size_t face, std::size_t below) {
-  return (q[face] - q[below]) * grid.lightness_of(axis, face) * inverse_theta(grid.depth[face], grid.depth[below]);
+  return slope_across(q[face], q[below], grid.lightness_of(axis, face), grid.depth[face], grid.depth[below]);
 }
 
 /// Less than this reaches a face of no particle, and its mean is noise.
@@ -26,25 +27,6 @@ constexpr double least_room = 0.5, least_room_read = 0.2;
 
 /// Of the matter in a cell: liquid that counts as all of it where there is too much.
 constexpr double little_liquid = 1.0 / 16;
-
-/// Of a cell: the most that grains take, however they are pressed.
-constexpr double most_grains = 0.85;
-
-/// Velocities behind walls become those before them, or their opposite where the wall holds liquids
-/// so that they are 0 on it; axis by axis, so that edges and corners follow.
-template <class R>
-void mirror_velocities(MacGrid<R>& grid) {
-  for (int axis = 0; axis < 3; ++axis)
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (static_cast<int>(a) == axis) continue;
-      R* const v = grid.velocity[a].data();
-      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t wall) {
-        if (behind < 2 * row_cells) return;  // no row there
-        const R turn = grid.holding.walls[wall] ? R(-1) : R(1);
-        for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) v[behind + n] = turn * v[before + n];
-      });
-    }
-}
 
 /// The part of a velocity along axis `a` that goes along the surface of a collider whose inside a
 /// face is in: of the normal by the slope of the room around.
@@ -84,7 +66,8 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
 template <class R>
 R filling(const MacGrid<R>& grid, std::size_t c) {
   if (grid.grain_volume.empty()) return grid.density[c];
-  return (grid.density[c] - grid.grain_volume[c]) / (1 - std::min(grid.grain_volume[c], static_cast<R>(most_grains)));
+  return (grid.density[c] - grid.grain_volume[c]) /
+         (1 - std::min(grid.grain_volume[c], static_cast<R>(GrainNumbers::most_packing)));
 }
 
 /// Calls body(place) for the cells beside one that a face which is not closed leads to.
@@ -340,8 +323,7 @@ void extend_velocities(MacGrid<R>& grid) {
     extend_layer(grid, a, true);
     extend_layer(grid, a, false);
   }
-  mirror_velocities(grid);
-  for (auto& f : grid.velocity) grid.wrap(f);
+  mirror_along_walls(grid, grid.velocity, grid.holding.walls);
 }
 
 template <class R>

@@ -250,7 +250,7 @@ typename Projection<R>::Step Projection<R>::start(World<R>& world, BodyContacts*
   s.kinetic = s.solids ? kinetic_of(world) : world.keeping;
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
-  at_start_ = world.colliders;
+  if (s.solids || !world.rigid.empty()) at_start_ = world.colliders;
   move_to_end(world, s.dt, false);
   free_bodies(world, s.gained, s.kick, !s.solids);
   bodies_.begin(world, s.density);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "dreampm/math/four.h"
 #include "dreampm/math/scalar.h"
 
 namespace dreampm {
@@ -11,7 +12,7 @@ namespace dreampm {
 template <class R>
 struct RowMask {
   using Int = std::conditional_t<sizeof(R) == 4, std::int32_t, std::int64_t>;
-  using V [[gnu::vector_size(8 * sizeof(R))]] = Int;
+  using V = Eight<Int>;
   V m;
   friend DM_FN RowMask operator&&(const RowMask& a, const RowMask& b) { return {a.m & b.m}; }
   friend DM_FN RowMask operator||(const RowMask& a, const RowMask& b) { return {a.m | b.m}; }
@@ -31,7 +32,7 @@ DM_FN bool any(const RowMask<R>& a) {
 
 template <class R>
 struct RowOf {
-  using V [[gnu::vector_size(8 * sizeof(R))]] = R;
+  using V = Eight<R>;
   V v;
 
   RowOf() = default;

@@ -6,15 +6,6 @@
 
 namespace dreampm {
 
-/// The places of a row's cells and of those beside it.
-struct RowAround {
-  std::size_t own, low[3], high[3];
-  DM_FN explicit RowAround(const CellRows::Row& row)
-      : own(std::size_t{row.number} * row_cells),
-        low{std::size_t{row.x_low} * row_cells, std::size_t{row.y_low} * row_cells, own - 1},
-        high{std::size_t{row.x_high} * row_cells, std::size_t{row.y_high} * row_cells, own + 1} {}
-};
-
 /// The loops, in a type of the instruction set's own.
 template <class R, class Isa>
 struct RowLoops {
@@ -28,14 +19,20 @@ struct RowLoops {
     return grid.lightness[a] ? S::load(grid.lightness[a] + face) : S(R(1));
   }
   /// What a field q of cells takes from the velocity of faces.
-  static DM_FN S slope(const Grid& grid, const R* q, int a, std::size_t face, std::size_t below) {
-    const S theta = inverse_theta(S::load(grid.depth + face), S::load(grid.depth + below));
-    return (S::load(q + face) - S::load(q + below)) * lightness(grid, a, face) * theta;
+  static DM_FN S slope(const Grid& grid, const R* q, int a, const RowPlaces& at) {
+    const std::size_t below = at.low[a];
+    return slope_across(S::load(q + at.own), S::load(q + below), lightness(grid, a, at.own),
+                        S::load(grid.depth + at.own), S::load(grid.depth + below));
+  }
+  /// Of which faces it takes that: those at liquid that are open.
+  static DM_FN Mask pressed(const Grid& grid, int a, const RowPlaces& at) {
+    const Mask at_liquid = S::load(grid.depth + at.own) > zero() || S::load(grid.depth + at.low[a]) > zero();
+    return at_liquid && S::load(grid.open[a] + at.own) > zero();
   }
 
   static void free_velocities(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least) {
     for (std::size_t n = begin; n < end; ++n) {
-      const std::size_t own = RowAround(grid.rows[n]).own;
+      const std::size_t own = RowPlaces(grid.rows[n]).own;
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
         const R* const sums = &grid.sums[a][own].momentum;
@@ -51,7 +48,7 @@ struct RowLoops {
 
   static void matrix(Grid grid, std::size_t begin, std::size_t end, const MatrixRows<R>& to) {
     for (std::size_t n = begin; n < end; ++n) {
-      const RowAround at(grid.rows[n]);
+      const RowPlaces at(grid.rows[n]);
       const S depth = S::load(grid.depth + at.own);
       const Mask liquid = depth > zero();
       S diagonal = zero(), inflow = zero();
@@ -77,15 +74,12 @@ struct RowLoops {
 
   static void apply_pressure(Grid grid, std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) {
-      const RowAround at(grid.rows[n]);
-      const Mask liquid = S::load(grid.depth + at.own) > zero();
+      const RowPlaces at(grid.rows[n]);
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
-        const Mask at_liquid = liquid || S::load(grid.depth + at.low[a]) > zero();
-        const Mask moved = at_liquid && S::load(grid.open[a] + at.own) > zero();
         const S free = S::load(grid.free[a] + at.own);
-        const S after = select(is_known(free), free, zero()) - slope(grid, grid.impulse, a, at.own, at.low[a]);
-        select(moved, after, S(unknown_velocity<R>)).store(grid.velocity[a] + at.own);
+        const S after = select(is_known(free), free, zero()) - slope(grid, grid.impulse, a, at);
+        select(pressed(grid, a, at), after, S(unknown_velocity<R>)).store(grid.velocity[a] + at.own);
       }
     }
   }
@@ -97,7 +91,7 @@ struct RowLoops {
     last[a] += 1;
     for (std::size_t n = begin; n < end; ++n) {
       const CellRows::Row& row = grid.rows[n];
-      const RowAround at(row);
+      const RowPlaces at(row);
       const S own = S::load(v + at.own);
       S out = own;
       const bool in =
@@ -125,15 +119,11 @@ struct RowLoops {
 
   static void move(Grid grid, std::size_t begin, std::size_t end, const R* displacement, R speed) {
     for (std::size_t n = begin; n < end; ++n) {
-      const RowAround at(grid.rows[n]);
-      const Mask liquid = S::load(grid.depth + at.own) > zero();
+      const RowPlaces at(grid.rows[n]);
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
-        const Mask at_liquid = liquid || S::load(grid.depth + at.low[a]) > zero();
-        const Mask pushed = at_liquid && S::load(grid.open[a] + at.own) > zero();
         const S v = S::load(grid.velocity[a] + at.own);
-        select(pushed, v - slope(grid, displacement, a, at.own, at.low[a]) * S(speed), v)
-            .store(grid.moving[a] + at.own);
+        select(pressed(grid, a, at), v - slope(grid, displacement, a, at) * S(speed), v).store(grid.moving[a] + at.own);
       }
     }
   }

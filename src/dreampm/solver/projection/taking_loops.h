@@ -50,6 +50,25 @@ DM_FN void samples_around(const R* field, const std::int32_t (&number)[lanes], S
       Row::pairs(field + i * Near::along_x + j * Near::along_y, number, samples.at[i][j][0], samples.at[i][j][1]);
 }
 
+/// Of the particles that `unknown` names the values that look(place, values) finds, one after the
+/// other. `x`: their places in cells from the first of the window.
+template <class S, class Row, int count, class Look>
+DM_FN void look_up(const Vec3<S>& x, unsigned unknown, S* const (&values)[count], const Look& look) {
+  using R = Scalar<S>;
+  constexpr int lanes = LaneTraits<S>::lanes;
+  alignas(64) R places[3][lanes], found[count][lanes];
+  for (int a = 0; a < 3; ++a) Row::keep(x[a], places[a]);
+  for (int c = 0; c < count; ++c) Row::keep(*values[c], found[c]);
+  for (int l = 0; l < lanes; ++l) {
+    if (!(unknown >> l & 1)) continue;
+    const R at[3] = {places[0][l], places[1][l], places[2][l]};
+    R there[count];
+    look(at, there);
+    for (int c = 0; c < count; ++c) found[c][l] = there[c];
+  }
+  for (int c = 0; c < count; ++c) *values[c] = Row::all(found[c]);
+}
+
 /// The velocity that moves particles, at places in cells from the first of the window.
 template <class S, class Row>
 DM_FN Vec3<S> moving_at(const BlockTaking<Scalar<S>>& block, const Scalar<S>* near, const Vec3<S>& x, unsigned used) {
@@ -74,16 +93,9 @@ DM_FN Vec3<S> moving_at(const BlockTaking<Scalar<S>>& block, const Scalar<S>* ne
   const auto known = inside && dot(v, v) < S(static_cast<R>(most_known2));
   const unsigned unknown = ~Row::bits(known) & used;
   if (__builtin_expect(unknown != 0, 0)) {
-    alignas(64) R places[3][lanes], found[3][lanes];
-    for (int a = 0; a < 3; ++a) Row::keep(x[a], places[a]), Row::keep(v[a], found[a]);
-    for (int l = 0; l < lanes; ++l) {
-      if (!(unknown >> l & 1)) continue;
-      const R at[3] = {places[0][l], places[1][l], places[2][l]};
-      R there[3];
-      block.beyond.moving(block.beyond.context, at, there);
-      for (int a = 0; a < 3; ++a) found[a][l] = there[a];
-    }
-    for (int a = 0; a < 3; ++a) v[a] = Row::all(found[a]);
+    S* const values[3] = {&v.x, &v.y, &v.z};
+    look_up<S, Row>(x, unknown, values,
+                    [&](const R(&at)[3], R(&there)[3]) { block.beyond.moving(block.beyond.context, at, there); });
   }
   return v;
 }
@@ -134,23 +146,16 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
   S speed2 = speed2_of();
   unsigned unknown = ~Row::bits(speed2 < known2) & used;
   if (__builtin_expect(unknown != 0, 0)) {
-    alignas(64) R places[3][lanes], found[3][4][lanes];
+    S* values[12];
     for (int a = 0; a < 3; ++a) {
-      Row::keep(start[a], places[a]), Row::keep(taken.v[a], found[a][0]);
-      for (int t = 0; t < 3; ++t) Row::keep(taken.slope[a][t], found[a][t + 1]);
+      values[4 * a] = &taken.v[a];
+      for (int t = 0; t < 3; ++t) values[4 * a + 1 + t] = &taken.slope[a][t];
     }
-    for (int l = 0; l < lanes; ++l) {
-      if (!(unknown >> l & 1)) continue;
-      const R at[3] = {places[0][l], places[1][l], places[2][l]};
-      R there[3][4];
-      block.beyond.slope(block.beyond.context, at, there);
-      for (int a = 0; a < 3; ++a)
-        for (int t = 0; t < 4; ++t) found[a][t][l] = t == 0 ? there[a][t] : there[a][t] * block.per_cell;
-    }
-    for (int a = 0; a < 3; ++a) {
-      taken.v[a] = Row::all(found[a][0]);
-      for (int t = 0; t < 3; ++t) taken.slope[a][t] = Row::all(found[a][t + 1]);
-    }
+    look_up<S, Row>(start, unknown, values, [&](const R(&at)[3], R(&there)[12]) {
+      R found[3][4];
+      block.beyond.slope(block.beyond.context, at, found);
+      for (int c = 0; c < 12; ++c) there[c] = c % 4 == 0 ? found[c / 4][0] : found[c / 4][c % 4] * block.per_cell;
+    });
     const auto known = speed2_of() < known2;
     // It keeps its own motion, and falls.
     for (int a = 0; a < 3; ++a) {

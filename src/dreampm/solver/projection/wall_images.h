@@ -31,4 +31,23 @@ void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
   });
 }
 
+/// What of faces behind walls is along them becomes that of the faces before, or its opposite where
+/// `turned` says so of the wall, so that it is 0 on it; axis by axis, so that edges and corners
+/// follow. Particles at a wall read behind it.
+template <class R>
+void mirror_along_walls(const MacGrid<R>& grid, std::array<LargeVector<R>, 3>& faces,
+                        const std::array<bool, 6>& turned = {}) {
+  for (int axis = 0; axis < 3; ++axis)
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (static_cast<int>(a) == axis) continue;
+      R* const v = faces[a].data();
+      for_images(grid, axis, [&](std::size_t behind, std::size_t before, int count, std::size_t wall) {
+        if (behind < 2 * row_cells) return;  // no row there
+        const R turn = turned[wall] ? R(-1) : R(1);
+        for (std::size_t n = 0; n < static_cast<std::size_t>(count); ++n) v[behind + n] = turn * v[before + n];
+      });
+    }
+  for (auto& f : faces) grid.wrap(f);
+}
+
 }  // namespace dreampm
