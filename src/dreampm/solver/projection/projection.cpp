@@ -142,8 +142,10 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   if (world.cell_pressure.size() != blocks.size() * block_nodes) return;
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
-    grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-      if (grid_.depth[at] > R(0)) grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
+    const R* const pressure = world.cell_pressure.data() + b * block_nodes;
+    grid_.cells.for_block_rows(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t k = 0; k < block_width; ++k)
+        grid_.impulse[at + k] = grid_.depth[at + k] > R(0) ? pressure[n + k] / static_cast<R>(scale) : R(0);
     });
   });
   grid_.wrap(grid_.impulse);
@@ -188,7 +190,7 @@ void Projection<R>::solve_pressure(const World<R>& world, const Leaving& leaving
   };
   pressure_iterations_ = solve();
   // Once is enough.
-  if (let_go_of_walls(grid_, leaving) == 0) return;
+  if (let_go_of_walls(grid_, solver_.matrix().rows, leaving) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
     if (!(grid_.depth[c] > R(0))) grid_.impulse[c] = R(0);
   });
@@ -236,8 +238,9 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
     R* const pressure = world.cell_pressure.data() + b * block_nodes;
     std::fill_n(pressure, block_nodes, R(0));
-    grid_.cells.for_block(
-        blocks[b], [&](std::size_t n, std::size_t at) { pressure[n] = grid_.impulse[at] * static_cast<R>(scale); });
+    grid_.cells.for_block_rows(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t k = 0; k < block_width; ++k) pressure[n + k] = grid_.impulse[at + k] * static_cast<R>(scale);
+    });
   });
 }
 
@@ -319,17 +322,16 @@ typename Projection<R>::Moved Projection<R>::advance(World<R>& world, const Step
 }
 
 template <class R>
-void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved,
-                          StepSums& sums) const {
+void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved, StepSums& sums) {
   const ParticleSet<R>* const liquid = liquid_of(world);
   const double particle = liquid ? liquid->mass : 0;
   sums.grid.max_speed = moved.liquid.fastest;
-  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.moment;
+  sums.grid.kinetic = faces.energy.projected * particle, sums.grid.moment = faces.moment;
   // What solids got from the liquid is not lost.
-  sums.projected = faces.lost * particle - sums.pass.energy.viscous +
+  sums.projected = faces.energy.lost * particle - sums.pass.energy.viscous +
                    (world.keeping - s.kinetic - moved.solids.first - moved.solids.pushed);
-  sums.transfer = s.kinetic - faces.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
-  sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
+  sums.transfer = s.kinetic - faces.energy.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
+  sums.swollen = excess_volume(grid_, solver_.matrix().rows) * world.dx * world.dx * world.dx;
   world.keeping = (sums.left_mass > 0 ? kinetic_of(world) : moved.liquid.kinetic) + moved.solids.last;
   sums.body += {s.gained * sums.grid.mass, cross(sums.grid.moment, s.gained),
                 -dot(world.gravity_at(world.time + s.dt) - world.gravity_at(world.time), sums.grid.moment)};
@@ -359,7 +361,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   world.node_speed = moved.liquid.fastest;
   world.dt_before = s.dt;
   const FlowSpeeds flow = s.solids ? flow_speeds(world) : FlowSpeeds{moved.liquid.usual, moved.liquid.fastest};
-  choose_projection_dt(world, flow, frame.left, crowding(grid_));
+  choose_projection_dt(world, flow, frame.left, crowding(grid_, solver_.matrix().rows));
   advance_clock(world, s.dt, frame.done);
   world.aim_colliders();
   if (frame.done || world.time >= next_sample_time)

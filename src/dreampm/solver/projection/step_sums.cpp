@@ -36,12 +36,9 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
       [&](Walls& sum, std::size_t n) {
         const RowPlaces at(rows[n]);
         for (int a = 0; a < 3; ++a) {
-          if (a < 2 && grid.wall_at(a, rows[n].first[a]) < 0) continue;
           const auto axis = static_cast<std::size_t>(a);
-          for (int lane = 0; lane < row_cells; ++lane) {
+          grid.for_on_walls(a, rows[n], [&](int lane, int wall) {
             const Vec3i face = rows[n].first + Vec3i{0, 0, lane};
-            const int wall = grid.wall_at(a, face[a]);
-            if (wall < 0) continue;
             const std::size_t place = at.own + static_cast<std::size_t>(lane),
                               below = at.low[axis] + static_cast<std::size_t>(lane);
             const R free = grid.free[axis][place], weight = grid.sums[axis][place].weight;
@@ -51,7 +48,7 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
             if (stopped != 0 || pressed != 0)
               add_along(sum[static_cast<std::size_t>(wall)], a, stopped + pressed * scale.cell,
                         low_face(world, face, a), 0);
-          }
+          });
         }
       },
       [](Walls& sum, const Walls& from) {
@@ -112,50 +109,36 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
 }
 
 template <class R>
-FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScale& scale) {
+FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& scale) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
+  const GridRows<R> as_rows = grid.as_rows(rows);
+  constexpr std::size_t rows_at_once = 64;
+  const Vec3<R> gained = static_cast<Vec3<R>>(scale.kick);
   return parallel_reduce(
-      rows.size(), FaceSums{},
-      [&](FaceSums& sum, std::size_t n) {
-        const std::size_t own = RowPlaces(rows[n]).own;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const R gained = static_cast<R>(scale.kick[static_cast<int>(a)]);
-          // A sum for each lane: they go side by side.
-          R given[row_cells], projected[row_cells], lost[row_cells];
+      (rows.size() + rows_at_once - 1) / rows_at_once, FaceSums{},
+      [&](FaceSums& sum, std::size_t piece) {
+        const std::size_t begin = piece * rows_at_once, end = std::min(rows.size(), begin + rows_at_once);
+        grid.kernels->energies(as_rows, begin, end, gained, sum.energy);
+        for (std::size_t n = begin; n < end; ++n) {
+          const std::size_t own = RowPlaces(rows[n]).own;
+          // Trilinear weights keep places.
+          double mass = 0, along = 0;
           for (std::size_t l = 0; l < row_cells; ++l) {
-            const auto [momentum, weight] = grid.sums[a][own + l];
-            const R free = grid.free[a][own + l], velocity = grid.velocity[a][own + l];
-            const bool known = is_known(free) && weight > R(0);
-            const R before = momentum / (known ? weight : R(1)), after = is_known(velocity) ? velocity : free;
-            given[l] = known ? momentum * before : R(0);
-            projected[l] = known ? weight * after * after : R(0);
-            lost[l] = known ? weight * (before + after) * (before + gained - after) : R(0);
+            double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
+            if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
+            if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
+            mass += m, along += m * static_cast<double>(l);
           }
-          const auto sum_of = [](const R(&of)[row_cells]) {
-            return static_cast<double>(((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7])));
-          };
-          sum.given += 0.5 * sum_of(given), sum.projected += 0.5 * sum_of(projected), sum.lost += 0.5 * sum_of(lost);
+          if (mass == 0) continue;
+          sum.moment += low_face(world, rows[n].first, 0) * mass;
+          sum.moment.z += along * world.dx;
         }
-        // Trilinear weights keep places.
-        double mass = 0, along = 0;
-        for (std::size_t l = 0; l < row_cells; ++l) {
-          double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
-          if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
-          if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
-          mass += m, along += m * static_cast<double>(l);
-        }
-        sum.moment += low_face(world, rows[n].first, 0) * mass;
-        sum.moment.z += along * world.dx;
       },
-      [](FaceSums& all, const FaceSums& from) {
-        all.given += from.given, all.projected += from.projected, all.lost += from.lost;
-        all.moment += from.moment;
-      });
+      [](FaceSums& all, const FaceSums& from) { all.energy.add(from.energy), all.moment += from.moment; });
 }
 
 template <class R>
-double excess_volume(const MacGrid<R>& grid) {
-  const std::span<const CellRows::Row> rows = grid.cells.rows();
+double excess_volume(const MacGrid<R>& grid, std::span<const CellRows::Row> rows) {
   return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
     const RowPlaces at(rows[n]);
     const R* const d = grid.depth.data();
@@ -171,11 +154,10 @@ double excess_volume(const MacGrid<R>& grid) {
 }
 
 template <class R>
-double crowding(const MacGrid<R>& grid) {
+double crowding(const MacGrid<R>& grid, std::span<const CellRows::Row> rows) {
   struct Sum {
     double excess = 0, all = 0;
   };
-  const std::span<const CellRows::Row> rows = grid.cells.rows();
   const Sum sum = parallel_reduce(
       rows.size(), Sum{},
       [&](Sum& to, std::size_t n) {
@@ -207,9 +189,9 @@ double kinetic_of(const World<R>& world) {
 
 #define DM_INSTANTIATE(R)                                                                                          \
   template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
-  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const StepScale&);                               \
-  template double excess_volume(const MacGrid<R>&);                                                                \
-  template double crowding(const MacGrid<R>&);                                                                     \
+  template FaceSums face_sums(const World<R>&, MacGrid<R>&, const StepScale&);                                     \
+  template double excess_volume(const MacGrid<R>&, std::span<const CellRows::Row>);                                \
+  template double crowding(const MacGrid<R>&, std::span<const CellRows::Row>);                                     \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
