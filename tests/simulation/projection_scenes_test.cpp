@@ -8,11 +8,11 @@
 #include <filesystem>
 
 #include "dreampm/base/error.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/frames.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/simulation/start.h"
 #include "scenes.h"
 
 namespace dreampm {

@@ -2,8 +2,8 @@
 #pragma once
 #include "dreampm/backend/backend.h"
 #include "dreampm/backend/mixture_share.h"
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/physics/particle.h"
-#include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 

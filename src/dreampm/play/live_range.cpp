@@ -13,7 +13,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/play/firmness.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {

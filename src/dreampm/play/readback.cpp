@@ -6,13 +6,13 @@
 #include <utility>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/play/cell_means.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/collider_mesh.h"
-#include "dreampm/simulation/frames.h"
+#include "dreampm/setup/collider_mesh.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/state/particle_view.h"
 

@@ -10,8 +10,8 @@
 #include "dreampm/play/finer.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/simulation/start.h"
 
 namespace dreampm::play {
 namespace {

@@ -10,7 +10,7 @@
 #include "dreampm/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/matter.h"
-#include "dreampm/simulation/projection_checks.h"
+#include "dreampm/setup/projection_checks.h"
 
 namespace dreampm::play {
 namespace {

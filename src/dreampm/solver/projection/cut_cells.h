@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "dreampm/contact/collider_view.h"
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/solver/projection/mac_grid.h"
-#include "dreampm/state/collider_view.h"
 
 namespace dreampm {
 
