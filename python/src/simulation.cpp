@@ -5,7 +5,6 @@
 #include "bindings.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/render.h"
-#include "dreampm/scene/description.h"
 #include "held.h"
 #include "matter.h"
 #include "parts.h"
@@ -106,8 +105,14 @@ void bind_time(nb::class_<Held>& c) {
           "advance_frames", [](Held& h, int n) { h.advance([&](Simulation& s) { s.advance_frames(n); }); },
           nb::arg("count"), "Steps to the end of that many frames.")
       .def(
-          "advance_steps", [](Held& h, int n) { return h.advance([&](Simulation& s) { return s.advance_steps(n); }); },
-          nb::arg("count"), "That many steps, at least one: faster than as many calls of `step`.")
+          "advance_steps",
+          [](Held& h, int n, bool goes_on) {
+            const ForceMean mean = goes_on ? ForceMean::goes_on : ForceMean::of_this_call;
+            return h.advance([&](Simulation& s) { return s.advance_steps(n, mean); });
+          },
+          nb::arg("count"), nb::kw_only(), nb::arg("goes_on") = false,
+          "That many steps, at least one: faster than as many calls of `step`. goes_on: forces on colliders are means\n"
+          "over the steps of the call before, too.")
       .def(
           "frames", [](nb::handle self, std::optional<int> n) { return frames(nb::borrow(self), n); },
           nb::arg("count") = nb::none(),
@@ -166,13 +171,12 @@ void bind_state(nb::class_<Held>& c) {
           "probes", [](nb::handle self) { return part_of<Probes>(nb::borrow(self)); },
           "By name: sim.probes['level']['height'], at sim.probes['level']['time'].")
       .def_prop_rw(
-          "gravity",
-          [](Held& h) { return h.look([](const Simulation& s) { return s.scene().description().gravity; }); },
+          "gravity", [](Held& h) { return h.look([](const Simulation& s) { return s.gravity(); }); },
           [](Held& h, const Vector<"gravity">& gravity) {
             const Vec3d g = gravity;
             h.call([&](Simulation& s) { s.set_gravity(g); });
           },
-          "[m/s^2]. What is set replaces keyframes, of which this is the first until then.")
+          "[m/s^2], now. What is set replaces keyframes.")
       .def_prop_ro(
           "totals", [](Held& h) { return h.call([](Simulation& s) { return s.totals(); }); },
           "Mass, momentum, energies: sums over all matter as it stands.")
@@ -276,6 +280,7 @@ void bind_simulation(nb::module_& m) {
   bind_state(c);
   bind_edits(c);
   bind_collider_edits(c);
+  bind_reads_of(c);
   c.def("__repr__", [](nb::handle self) {
     return shown(self, "Simulation", {"scene", "time", "frame", "steps", "particle_count"});
   });
