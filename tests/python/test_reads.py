@@ -79,6 +79,19 @@ def test_attributes_of_particles(tank):
         dm.Simulation(tank).attribute("water", "presure")
 
 
+def test_particles_come_with_velocities_and_gradients(tank):
+    sim = dm.Simulation(tank)
+    x = np.array([[0.3, 0.2, 0.1], [0.34, 0.2, 0.1]])
+    v, c = np.array([[1, 0, 0], [0, 2, 0]]), np.arange(18.0).reshape(2, 3, 3)
+    sim.add_particles("jelly", x, velocities=v, gradients=c)
+    assert np.array_equal(sim.particles["jelly"].velocity[-2:], v)
+    assert np.array_equal(sim.attribute("jelly", "velocity_gradient")[-2:], c)
+    with pytest.raises(dm.InputError, match="2 positions, 1 velocities and 2 gradients"):
+        sim.add_particles("jelly", x, velocities=v[:1])
+    with pytest.raises(TypeError, match=r"gradients: shape \(2, 9\): matrices are of shape \(n, 3, 3\)"):
+        sim.add_particles("jelly", x, gradients=np.zeros((2, 9)))
+
+
 def test_states_and_counts(tank):
     sim = dm.Simulation(tank)
     jelly = sim.material("jelly")

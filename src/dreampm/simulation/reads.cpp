@@ -155,26 +155,28 @@ void Simulation::visit(std::string_view material, const ParticleFields& fields,
     constexpr std::size_t most = 512;  // whose arrays stay in the first cache
     std::array<Vec3d, most> position, velocity;
     ParticleBatch batch;
-    const auto give = [&] {
-      if (batch.count == 0) return;
-      if (fields.position) batch.position = {position.data(), batch.count};
+    const auto give = [&](std::size_t count) {
+      batch.count = count;
+      if (fields.position) batch.position = {position.data(), count};
       if (fields.velocity) {
         const auto& own = engine.motion().sets[m].velocity;
-        for (std::size_t i = 0; i < batch.count; ++i) velocity[i] = static_cast<Vec3d>(own[batch.first + i]);
-        batch.velocity = {velocity.data(), batch.count};
+        for (std::size_t i = 0; i < count; ++i) velocity[i] = static_cast<Vec3d>(own[batch.first + i]);
+        batch.velocity = {velocity.data(), count};
       }
-      if (fields.id) batch.id = particles.ids().subspan(batch.first, batch.count);
+      if (fields.id) batch.id = particles.ids().subspan(batch.first, count);
       see(batch);
-      batch.first += std::exchange(batch.count, 0);
+      batch.first += count;
     };
     if (fields.position) {
+      std::size_t count = 0;
       particles.for_each([&](std::size_t, const Vec3d& x) {
-        position[batch.count] = x;
-        if (++batch.count == most) give();
+        position[count] = x;
+        if (++count == most) give(std::exchange(count, 0));
       });
-      return give();
+      if (count > 0) give(count);
+    } else {
+      while (batch.first < particles.size()) give(std::min(most, particles.size() - batch.first));
     }
-    while (batch.first < particles.size()) batch.count = std::min(most, particles.size() - batch.first), give();
   });
 }
 
