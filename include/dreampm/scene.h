@@ -61,4 +61,8 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options 
 Scene parse_scene(std::string_view yaml, const std::string& name, const SceneOptions& options = {},
                   std::vector<std::string>* warnings = nullptr);
 
+/// A line for each part of a scene that its `time.solver` cannot do, with its place and what would
+/// be right. A Simulation of a scene that has any is refused with them.
+std::vector<std::string> refused_parts(const Scene& scene);
+
 }  // namespace dreampm

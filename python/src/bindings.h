@@ -8,6 +8,7 @@ void bind_values(nanobind::module_& module);      ///< reports, poses, shapes, s
 void bind_scene(nanobind::module_& module);       ///< Scene
 void bind_matter(nanobind::module_& module);      ///< Particles, Mesh, write_png
 void bind_parts(nanobind::module_& module);       ///< materials, walls and colliders of a simulation
+void bind_reads(nanobind::module_& module);       ///< what is read of a simulation, rays
 void bind_simulation(nanobind::module_& module);  ///< Simulation, render
 void bind_pipeline(nanobind::module_& module);    ///< make, validate
 

@@ -53,8 +53,11 @@ void bind_collider_edits(nb::class_<HeldSimulation>& c) {
           "Draws the point `at` [m] of a rigid body, of its shape as the scene gives it, to `to` [m] by a spring of\n"
           "`stiffness` [N/m] and `damping` [N s/m], until another hold of that body or `let_go`.")
       .def(
-          "let_go", [](Held& h, const std::string& name) { h.call([&](Simulation& s) { s.let_go(name); }); },
-          nb::arg("name"), "Nothing happens where the body is not held.")
+          "let_go",
+          [](Held& h, const std::optional<std::string>& name) {
+            h.call([&](Simulation& s) { name ? s.let_go(*name) : s.let_go(); });
+          },
+          nb::arg("name") = nb::none(), "Of all bodies without a name. Nothing happens where the body is not held.")
       .def("add_collider", add_collider, nb::arg("name"), nb::arg("shape"), nb::kw_only(), nb::arg("type") = "separate",
            nb::arg("friction") = 0.0, nb::arg("look") = nb::none(),
            nb::sig("def add_collider(self, name: str, shape: Shape | dict[str, object] | str, *, "

@@ -111,5 +111,10 @@ SceneShape shape_of(nb::handle shape);
 
 /// "Name(a=1, b=2)" of the attributes named.
 std::string shown(nb::handle object, const char* name, const std::vector<const char*>& attributes);
+/// Gives a class such a __repr__.
+template <class C>
+void show(C& bound, const char* name, std::vector<const char*> attributes) {
+  bound.def("__repr__", [=](nb::handle self) { return shown(self, name, attributes); });
+}
 
 }  // namespace dreampm::python

@@ -83,5 +83,6 @@ struct PartOf {
 extern const PyType_Slot simulation_slots[], part_slots[];
 
 void bind_collider_edits(nb::class_<HeldSimulation>& simulation);  ///< of Simulation
+void bind_reads_of(nb::class_<HeldSimulation>& simulation);        ///< the same
 
 }  // namespace dreampm::python

@@ -6,13 +6,11 @@
 
 #include "bindings.h"
 #include "dreampm/base/error.h"
-#include "dreampm/scene/description.h"
-#include "dreampm/scene/sections.h"
 
 namespace dreampm::python {
 namespace {
 
-using Names = std::vector<std::string>;
+using List = std::vector<std::string>;
 
 struct MaterialPart : PartOf {
   std::string name;
@@ -21,33 +19,20 @@ struct ColliderPart : PartOf {
   std::string name;
 };
 
-SceneDescription description_of(const PartOf& part) {
-  return part.held().look([](const Simulation& s) { return s.scene().description(); });
+Names names_in(const PartOf& part) {
+  return part.held().look([](const Simulation& s) { return s.names(); });
 }
 
-Names names_of(const Materials& part) {
-  return part.held().look([](const Simulation& s) { return s.scene().materials(); });
-}
-Names names_of(const ParticleSets& part) {
-  return part.held().look([](const Simulation& s) { return s.scene().materials(); });
-}
-Names names_of(const Walls&) { return {scene::wall_names.begin(), scene::wall_names.end()}; }
-Names names_of(const Colliders& part) {
-  Names names;
-  for (const scene::Collider& c : description_of(part).colliders) names.push_back(c.name);
-  return names;
-}
-
-Names names_of(const Probes& part) {
-  Names names;
-  for (const scene::Probe& p : description_of(part).probes) names.push_back(p.name);
-  return names;
-}
+List names_of(const Materials& part) { return names_in(part).materials; }
+List names_of(const ParticleSets& part) { return names_in(part).materials; }
+List names_of(const Walls&) { return {side_names.begin(), side_names.end()}; }
+List names_of(const Colliders& part) { return names_in(part).colliders; }
+List names_of(const Probes& part) { return names_in(part).probes; }
 
 /// The number of a name. Throws InputError with the names that there are.
 template <class Part>
 std::size_t number_of(const Part& part, const std::string& name, const char* kind) {
-  const Names names = names_of(part);
+  const List names = names_of(part);
   const auto at = std::find(names.begin(), names.end(), name);
   if (at != names.end()) return static_cast<std::size_t>(at - names.begin());
   std::string known;
@@ -67,7 +52,7 @@ void as_mapping(C& bound) {
       .def("__len__", [](const Part& part) { return names_of(part).size(); })
       .def("__contains__",
            [](const Part& part, const std::string& name) {
-             const Names names = names_of(part);
+             const List names = names_of(part);
              return std::find(names.begin(), names.end(), name) != names.end();
            })
       .def("__repr__", [](const Part& part) {
@@ -78,43 +63,48 @@ void as_mapping(C& bound) {
 
 // ---- materials
 
-scene::Material material_of(const MaterialPart& part) {
-  SceneDescription scene = description_of(part);
-  for (scene::Material& m : scene.materials)
-    if (m.name == part.name) return m;
-  fail_input("material {} is not in the scene any more", part.name);
+std::vector<Parameter> parameters_of(const MaterialPart& part) {
+  return part.held().look([&](const Simulation& s) { return s.parameters(part.name); });
 }
 
+MaterialState state_of(const MaterialPart& part) {
+  return part.held().look([&](const Simulation& s) { return s.material(part.name); });
+}
+
+bool is_flag(const Parameter& p) { return p.words.size() == 2 && p.words[0].first == "false"; }
+
 /// A word where no number may stand for it, else the number; None: derived.
-nb::object value_of(const Param& param, double value) {
-  if (std::isnan(value)) return nb::none();
-  if (param.words.data() == flag_words) return nb::bool_(value != 0);
-  for (const Word& word : param.words)
-    if (word.value == value && (param.words_only || value < param.min || value > param.max))
-      return nb::str(word.name.data(), word.name.size());
-  return nb::float_(value);
+nb::object value_of(const Parameter& p) {
+  if (std::isnan(p.value)) return nb::none();
+  if (is_flag(p)) return nb::bool_(p.value != 0);
+  for (const auto& [word, value] : p.words)
+    if (value == p.value && (p.words_only || value < p.min || value > p.max)) return nb::str(word.data(), word.size());
+  return nb::float_(p.value);
 }
 
 double number_of(const MaterialPart& part, const std::string& key, nb::handle value) {
   if (!nb::isinstance<nb::str>(value)) return nb::cast<double>(nb::float_(value));
   const std::string text = nb::cast<std::string>(value);
-  const scene::Material material = material_of(part);
   std::string words;
-  if (const Param* p = material.info->find(key))
-    for (const Word& word : p->words) {
-      if (word.name == text) return word.value;
-      words += std::string(words.empty() ? "" : ", ") + std::string(word.name);
+  for (const Parameter& p : parameters_of(part)) {
+    if (p.key != key) continue;
+    for (const auto& [word, number] : p.words) {
+      if (word == text) return number;
+      words += std::string(words.empty() ? "" : ", ") + std::string(word);
     }
+  }
   fail_input("materials.{}.{}: '{}' is no number{}", part.name, key, text, words.empty() ? "" : "; words: " + words);
 }
 
 nb::object parameter(const MaterialPart& part, const std::string& key) {
-  const scene::Material material = material_of(part);
-  if (const Param* p = material.info->find(key)) return value_of(*p, material.values[key]);
+  const std::vector<Parameter> all = parameters_of(part);
   std::string known;
-  for (const Param& p : material.info->params) known += (known.empty() ? "" : ", ") + std::string(p.key);
+  for (const Parameter& p : all) {
+    if (p.key == key) return value_of(p);
+    known += std::string(known.empty() ? "" : ", ") + std::string(p.key);
+  }
   throw nb::attribute_error(
-      fmt::format("material {} ({}) has no parameter {}; it has {}", part.name, material.info->name, key, known)
+      fmt::format("material {} ({}) has no parameter {}; it has {}", part.name, state_of(part).type, key, known)
           .c_str());
 }
 
@@ -124,15 +114,14 @@ void set_parameter(const MaterialPart& part, const std::string& key, nb::handle 
 }
 
 nb::dict parameters(const MaterialPart& part) {
-  const scene::Material material = material_of(part);
   nb::dict all;
-  for (const Param& p : material.info->params) {
+  for (const Parameter& p : parameters_of(part)) {
     nb::dict one;
-    one["value"] = value_of(p, material.values[p.key]);
+    one["value"] = value_of(p);
     one["unit"] = std::string(p.unit);
     one["min"] = p.min;
     one["max"] = p.max;
-    one["about"] = std::string(p.help);
+    one["about"] = std::string(p.about);
     all[nb::str(p.key.data(), p.key.size())] = one;
   }
   return all;
@@ -150,14 +139,13 @@ void bind_materials(nb::module_& m) {
            nb::sig("def __setattr__(self, key: str, value: float | bool | str) -> None"))
       .def("__dir__",
            [](const MaterialPart& part) {
-             Names names{"name", "type", "parameters", "reset_state"};
-             for (const Param& p : material_of(part).info->params) names.emplace_back(p.key);
+             List names{"name", "type", "parameters", "reset_state"};
+             for (const Parameter& p : parameters_of(part)) names.emplace_back(p.key);
              return names;
            })
       .def_prop_ro("name", [](const MaterialPart& part) { return part.name; })
       .def_prop_ro(
-          "type", [](const MaterialPart& part) { return std::string(material_of(part).info->name); },
-          "newtonian, elastic, snow, ...")
+          "type", [](const MaterialPart& part) { return state_of(part).type; }, "newtonian, elastic, snow, ...")
       .def("parameters", parameters, nb::sig("def parameters(self) -> dict[str, dict[str, object]]"),
            "Of every parameter its value, unit, min, max and what it is about.")
       .def(
@@ -166,10 +154,9 @@ void bind_materials(nb::module_& m) {
           "Forgets the deformation: its particles are at rest volume, without stress. Positions and\n"
           "velocities stay.")
       .def("__repr__", [](const MaterialPart& part) {
-        const scene::Material material = material_of(part);
-        std::string text = fmt::format("<Material {}: {}", part.name, material.info->name);
-        for (const Param& p : material.info->params)
-          text += fmt::format(", {}={}", p.key, nb::cast<std::string>(nb::repr(value_of(p, material.values[p.key]))));
+        std::string text = fmt::format("<Material {}: {}", part.name, state_of(part).type);
+        for (const Parameter& p : parameters_of(part))
+          text += fmt::format(", {}={}", p.key, nb::cast<std::string>(nb::repr(value_of(p))));
         return text + ">";
       });
   nb::class_<Materials> all(m, "Materials", "The materials of a simulation by name.", nb::type_slots(part_slots));
@@ -191,34 +178,32 @@ void bind_particle_sets(nb::module_& m) {
 
 // ---- walls
 
-struct WallValue {
-  std::string type;
-  double friction = 0;
-};
-
-WallValue wall(const Walls& part, const std::string& name) {
-  const scene::Wall w = description_of(part).space.walls[number_of(part, name, "wall")];
-  return {scene::wall_type_words().at(static_cast<std::size_t>(w.type)), w.friction};
+WallState wall(const Walls& part, const std::string& name) {
+  const auto side = static_cast<Side>(number_of(part, name, "wall"));
+  return part.held().look([&](const Simulation& s) { return s.wall(side); });
 }
 
 void set_wall(const Walls& part, const std::string& name, nb::handle value) {
   const auto side = static_cast<Side>(number_of(part, name, "wall"));
-  WallValue w;
-  if (nb::isinstance<WallValue>(value))
-    w = nb::cast<WallValue>(value);
+  std::string type;
+  double friction = 0;
+  if (nb::isinstance<WallState>(value))
+    type = nb::cast<const WallState&>(value).type, friction = nb::cast<const WallState&>(value).friction;
   else if (nb::isinstance<nb::str>(value))
-    w.type = nb::cast<std::string>(value);
+    type = nb::cast<std::string>(value);
   else if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 2)
-    w = {nb::cast<std::string>(value[0]), nb::cast<double>(value[1])};
+    type = nb::cast<std::string>(value[0]), friction = nb::cast<double>(value[1]);
   else
     throw nb::type_error("a wall is a type, as 'slip', or a type with its friction, as ('separate', 0.3)");
-  part.held().call([&](Simulation& s) { s.set_wall(side, w.type, w.friction); });
+  part.held().call([&](Simulation& s) { s.set_wall(side, type, friction); });
 }
 
 void bind_walls(nb::module_& m) {
-  nb::class_<WallValue> one(m, "Wall", "A wall of the box.");
-  one.def_ro("type", &WallValue::type, "separate, slip, stick or open.")
-      .def_ro("friction", &WallValue::friction, "Coulomb's coefficient, >= 0.")
+  nb::class_<WallState> one(m, "Wall", "A wall of the box.");
+  one.def_ro("type", &WallState::type, "separate, slip, stick or open.")
+      .def_ro("friction", &WallState::friction, "Coulomb's coefficient, >= 0.")
+      .def_ro("skin_friction", &WallState::skin_friction,
+              "Whether it slows liquids as a smooth wall with a boundary layer does.")
       .def("__repr__", [](nb::handle self) { return shown(self, "Wall", {"type", "friction"}); });
   nb::class_<Walls> all(
       m, "Walls",
@@ -249,6 +234,25 @@ void bind_colliders(nb::module_& m) {
       .def_prop_ro(
           "force", [](const ColliderPart& part) { return state_of(part).force; },
           "N: what matter pressed it with, on average over the steps of the last call.")
+      .def_prop_ro(
+          "type", [](const ColliderPart& part) { return state_of(part).type; },
+          "What its surface does to matter: separate, slip or stick.")
+      .def_prop_ro(
+          "friction", [](const ColliderPart& part) { return state_of(part).friction; }, "Coulomb's coefficient.")
+      .def_prop_ro(
+          "is_rigid", [](const ColliderPart& part) { return state_of(part).is_rigid; }, "Whether it is a rigid body.")
+      .def_prop_ro(
+          "moves", [](const ColliderPart& part) { return state_of(part).moves; },
+          "Whether it may stand elsewhere than in the scene.")
+      .def_prop_ro(
+          "deforms", [](const ColliderPart& part) { return state_of(part).deforms; }, "Whether its shape changes.")
+      .def_prop_rw(
+          "slack", [](const ColliderPart& part) { return state_of(part).slack; },
+          [](const ColliderPart& part, double slack) {
+            part.held().call([&](Simulation& s) { s.set_slack(part.name, slack); });
+          },
+          "Cells that it moves between two looks at where its surface is, above 0 to 0.25: each look takes as long\n"
+          "as many steps.")
       .def_prop_rw(
           "motion", [](const ColliderPart& part) { return state_of(part).twist; },
           [](const ColliderPart& part, const Twist& motion) {

@@ -5,7 +5,6 @@
 #include "bindings.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/render.h"
-#include "dreampm/scene/description.h"
 #include "held.h"
 #include "matter.h"
 #include "parts.h"
@@ -50,10 +49,31 @@ Part part_of(nb::object simulation) {
   return {{std::move(simulation)}};
 }
 
-void add_particles(Held& held, const std::string& material, nb::handle positions, const Vector<"velocity">& velocity) {
+/// The three rows of each matrix of an array (n, 3, 3).
+std::vector<Vec3d> rows_of(nb::handle matrices, const char* name) {
+  const nb::object array = nb::module_::import_("numpy").attr("asarray")(matrices, "float64");
+  if (!nb::cast<bool>(array.attr("shape")[nb::slice(1, 3)].attr("__eq__")(nb::make_tuple(3, 3))))
+    throw nb::type_error((std::string(name) + ": shape " + nb::cast<std::string>(nb::repr(array.attr("shape"))) +
+                          ": matrices are of shape (n, 3, 3)")
+                             .c_str());
+  return points_of(array.attr("reshape")(-1, 3), name);
+}
+
+void add_particles(Held& held, const std::string& material, nb::handle positions, const Vector<"velocity">& velocity,
+                   nb::handle velocities, nb::handle gradients) {
   const std::vector<Vec3d> places = points_of(positions, "positions");
-  const Vec3d v = velocity;
-  held.call([&](Simulation& s) { s.add_particles(material, places, v); });
+  const Vec3d one = velocity;
+  const std::vector<Vec3d> each = velocities.is_none() ? std::vector(places.size(), one)
+                                                       : points_of(velocities, "velocities"),
+                           rows = gradients.is_none() ? std::vector(3 * places.size(), Vec3d{})
+                                                      : rows_of(gradients, "gradients");
+  if (each.size() != places.size() || rows.size() != 3 * places.size())
+    throw InputError("add_particles: " + std::to_string(places.size()) + " positions, " + std::to_string(each.size()) +
+                     " velocities and " + std::to_string(rows.size() / 3) + " gradients: must be as many");
+  std::vector<NewParticle> particles;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    particles.push_back({places[i], each[i], {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]}});
+  held.call([&](Simulation& s) { s.add_particles(material, particles); });
 }
 
 TriMesh surface(Held& held, const std::optional<std::string>& material, double voxel, int smooth) {
@@ -106,8 +126,14 @@ void bind_time(nb::class_<Held>& c) {
           "advance_frames", [](Held& h, int n) { h.advance([&](Simulation& s) { s.advance_frames(n); }); },
           nb::arg("count"), "Steps to the end of that many frames.")
       .def(
-          "advance_steps", [](Held& h, int n) { return h.advance([&](Simulation& s) { return s.advance_steps(n); }); },
-          nb::arg("count"), "That many steps, at least one: faster than as many calls of `step`.")
+          "advance_steps",
+          [](Held& h, int n, bool goes_on) {
+            const ForceMean mean = goes_on ? ForceMean::goes_on : ForceMean::of_this_call;
+            return h.advance([&](Simulation& s) { return s.advance_steps(n, mean); });
+          },
+          nb::arg("count"), nb::kw_only(), nb::arg("goes_on") = false,
+          "That many steps, at least one: faster than as many calls of `step`. goes_on: forces on colliders are means\n"
+          "over the steps of the call before, too.")
       .def(
           "frames", [](nb::handle self, std::optional<int> n) { return frames(nb::borrow(self), n); },
           nb::arg("count") = nb::none(),
@@ -166,13 +192,12 @@ void bind_state(nb::class_<Held>& c) {
           "probes", [](nb::handle self) { return part_of<Probes>(nb::borrow(self)); },
           "By name: sim.probes['level']['height'], at sim.probes['level']['time'].")
       .def_prop_rw(
-          "gravity",
-          [](Held& h) { return h.look([](const Simulation& s) { return s.scene().description().gravity; }); },
+          "gravity", [](Held& h) { return h.look([](const Simulation& s) { return s.gravity(); }); },
           [](Held& h, const Vector<"gravity">& gravity) {
             const Vec3d g = gravity;
             h.call([&](Simulation& s) { s.set_gravity(g); });
           },
-          "[m/s^2]. What is set replaces keyframes, of which this is the first until then.")
+          "[m/s^2], now. What is set replaces keyframes.")
       .def_prop_ro(
           "totals", [](Held& h) { return h.call([](Simulation& s) { return s.totals(); }); },
           "Mass, momentum, energies: sums over all matter as it stands.")
@@ -217,11 +242,14 @@ void bind_edits(nb::class_<Held>& c) {
         "Fills a shape with a material of the scene. name: not yet in use; velocity [m/s]; spin [rad/s] about\n"
         "the body's center; color: sRGB, 0 to 1. Refuses a body that reaches outside of walls or into colliders.")
       .def("add_particles", add_particles, nb::arg("material"), nb::arg("positions"), nb::kw_only(),
-           nb::arg("velocity") = Vec3d{},
+           nb::arg("velocity") = Vec3d{}, nb::arg("velocities") = nb::none(), nb::arg("gradients") = nb::none(),
            nb::sig("def add_particles(self, material: str, positions: numpy.typing.ArrayLike, *, velocity: "
-                   "numpy.typing.ArrayLike = (0, 0, 0)) -> None"),
-           "Particles of a material at these places, (n, 3) [m], all at one velocity [m/s], undeformed. Where matter\n"
-           "is already it is there twice. Refuses a place outside of the walls, and adds none then.")
+                   "numpy.typing.ArrayLike = (0, 0, 0), velocities: numpy.typing.ArrayLike | None = None, "
+                   "gradients: numpy.typing.ArrayLike | None = None) -> None"),
+           "Particles of a material at these places, (n, 3) [m], all at one velocity [m/s], undeformed; or each with\n"
+           "its own of `velocities`, (n, 3), and its velocity gradient, (n, 3, 3) [1/s]: row a is that of component a\n"
+           "along x, y, z. Where matter is already it is there twice. Refuses a place outside of the walls, and adds\n"
+           "none then.")
       .def(
           "remove",
           [](Held& h, nb::handle region) {
@@ -276,6 +304,7 @@ void bind_simulation(nb::module_& m) {
   bind_state(c);
   bind_edits(c);
   bind_collider_edits(c);
+  bind_reads_of(c);
   c.def("__repr__", [](nb::handle self) {
     return shown(self, "Simulation", {"scene", "time", "frame", "steps", "particle_count"});
   });

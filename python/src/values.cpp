@@ -6,12 +6,6 @@
 namespace dreampm::python {
 namespace {
 
-/// Gives a class a __repr__ of its attributes.
-template <class C>
-void show(C& bound, const char* name, std::vector<const char*> attributes) {
-  bound.def("__repr__", [=](nb::handle self) { return shown(self, name, attributes); });
-}
-
 void bind_reports(nb::module_& m) {
   nb::class_<StepReport> step(m, "StepReport", "What one step did.");
   step.def_ro("step", &StepReport::step, "Steps so far, this one included.")
@@ -31,17 +25,21 @@ void bind_reports(nb::module_& m) {
       .def_ro("steps", &FrameEvent::steps, "Steps in the frame that ended.");
   show(frame, "FrameEvent", {"frame", "time", "steps"});
 
-  nb::class_<Totals> totals(m, "Totals", "Sums over all matter, and what edits brought in and took out.");
-  totals.def_ro("particles", &Totals::particles, "How many there are.")
-      .def_ro("mass", &Totals::mass, "[kg]")
+  nb::class_<ParticleCounts> counts(m, "ParticleCounts", "Particles that are there, and those that came and went.");
+  counts.def_ro("particles", &ParticleCounts::particles, "How many there are.")
+      .def_ro("entered", &ParticleCounts::entered, "Particles that `add` and `add_particles` brought, in all.")
+      .def_ro("removed", &ParticleCounts::removed, "Particles that `remove` took, in all.")
+      .def_ro("left", &ParticleCounts::left, "Particles that left through open walls, in all.")
+      .def_ro("drained", &ParticleCounts::drained, "Particles that sinks took, in all.");
+  show(counts, "ParticleCounts", {"particles", "entered", "removed", "left", "drained"});
+
+  nb::class_<Totals, ParticleCounts> totals(m, "Totals",
+                                            "Sums over all matter, and what edits brought in and took out.");
+  totals.def_ro("mass", &Totals::mass, "[kg]")
       .def_ro("momentum", &Totals::momentum, "[kg m/s]")
       .def_ro("kinetic", &Totals::kinetic, "Kinetic energy [J].")
       .def_ro("elastic", &Totals::elastic, "Elastic energy [J].")
       .def_ro("volume", &Totals::volume, "[m^3]")
-      .def_ro("entered", &Totals::entered, "Particles that `add` and `add_particles` brought, in all.")
-      .def_ro("removed", &Totals::removed, "Particles that `remove` took, in all.")
-      .def_ro("left", &Totals::left, "Particles that left through open walls, in all.")
-      .def_ro("drained", &Totals::drained, "Particles that sinks took, in all.")
       .def_ro("entered_mass", &Totals::entered_mass, "[kg]")
       .def_ro("removed_mass", &Totals::removed_mass, "[kg]")
       .def_ro("entered_momentum", &Totals::entered_momentum, "[kg m/s]")

@@ -12,7 +12,6 @@
 #include "dreampm/error.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/random_hands.h"
-#include "dreampm/simulation/simulation_impl.h"
 #include "small_stage.h"
 
 namespace dreampm::play::playground_test {
@@ -181,9 +180,7 @@ TEST(Playground, AHandOfThePastLetsGo) {
            "frames 12", "pin off", "release", "frames 30"});
   // Back to where the hand pushed and the pin held.
   play(p, {"seek 0.6", "frames 1"});
-  const auto brushes = [&] {
-    return p.simulation().impl().with_engine([](auto& engine) { return engine.world().fields.size(); });
-  };
+  const auto brushes = [&] { return p.simulation().names().brushes.size(); };
   EXPECT_EQ(brushes(), 1u) << "the pin is there again, the hand is not";
   play(p, {"pin off", "frames 1"});
   EXPECT_EQ(brushes(), 0u);

@@ -8,6 +8,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
+#include "dreampm/scene/description.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -88,6 +89,27 @@ TEST_F(Save, MayBeSavedAgainFromWhatWasSaved) {
   Simulation two(load_scene(folder / "one.yaml"), quiet());
   two.advance_steps(10);
   expect_same_future(two, "two.yaml");
+}
+
+// Eight for one, with the same mass and momentum, in a scene at half the spacing.
+TEST_F(Save, AMomentForAFinerScene) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.advance_steps(30);
+  std::filesystem::create_directories(folder);
+  SceneDescription denser = s.scene().description();
+  denser.space.asked_max = denser.space.max, denser.space.spacing /= 2;
+  denser.bodies.clear();
+  s.save_moment(folder / "finer.h5", Scene(denser, "finer"));
+  denser.start = (folder / "finer.h5").string();
+  Simulation finer(Scene(denser, "finer"), quiet());
+  EXPECT_EQ(finer.particle_count(), 8 * s.particle_count());
+  EXPECT_EQ(finer.time(), s.time());
+  const Totals then = s.totals(), now = finer.totals();
+  EXPECT_NEAR(now.mass, then.mass, 1e-6 * then.mass);
+  EXPECT_LT(length(now.momentum - then.momentum), 1e-4 * length(then.momentum));
+  EXPECT_THAT([&] { s.save_moment(folder / "no.h5", s.scene()); },
+              ThrowsMessage<InputError>(HasSubstr("with space.spacing 0.01 m, half of what it is")));
+  finer.step();
 }
 
 TEST_F(Save, RefusesNamesThatNoSceneHas) {

@@ -17,7 +17,6 @@
 #include "dreampm/pipeline/preflight.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/render.h"
-#include "dreampm/simulation/simulation_impl.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -34,10 +33,7 @@ class Start : public testing::Test {
     std::filesystem::create_directories(folder);
     first.emplace(dam_and_jelly(), quiet());
     first->advance_steps(45);
-    first->impl().with_engine([&](auto& engine) {
-      engine.download(MatterFields::all);
-      write_start(folder / "moment.h5", engine.world(), engine.motion(), first->impl().state.expected);
-    });
+    first->save_moment(folder / "moment.h5");
   }
   void TearDown() override { std::filesystem::remove_all(folder); }
 
@@ -145,10 +141,7 @@ TEST_F(Start, AFilmDrawsWhatWasDraggedWhereItStands) {
   dragged.dt();
   const double moved = dragged.collider("slab").pose.position.x;
   ASSERT_LT(moved, -0.1);
-  dragged.impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::all);
-    write_start(folder / "slab.h5", engine.world(), engine.motion(), dragged.impl().state.expected);
-  });
+  dragged.save_moment(folder / "slab.h5");
   scene::SceneDescription next = text.description();
   next.bodies.clear();
   next.start = "slab.h5", next.time.frames = dragged.frame();

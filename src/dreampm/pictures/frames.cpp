@@ -35,13 +35,15 @@ void add_pressure(const World<R>& world, const Motion<R>& motion, std::size_t s,
 
 /// A state column by name, or its value in a material that has none.
 template <class R>
-void add_column(const World<R>& world, std::size_t s, const std::string& name, float otherwise,
-                std::vector<float>& out) {
+void add_state(const World<R>& world, std::size_t s, std::string_view name, float otherwise, std::vector<float>& out) {
   const ParticleSetView particles(world, s);
   const auto c = find_column(world.sets[s].material, name);
   for (std::size_t p = 0; p < particles.size(); ++p)
     out.push_back(c ? static_cast<float>(particles.column(*c)[p]) : otherwise);
 }
+
+/// Of a column of a matrix, as `f_12`.
+bool is_on_diagonal(std::string_view column) { return column[column.size() - 2] == column.back(); }
 
 template <class T>
 void reorder(std::vector<T>& v, const std::vector<std::uint32_t>& order) {
@@ -63,6 +65,43 @@ Vec3d file_shift(const Vec3d& min, const Vec3d& max, double spacing) {
   return shift;
 }
 
+std::vector<std::string> columns_of(std::string_view attribute) {
+  const std::string_view matrix = attribute == "f" ? "f" : attribute == "velocity_gradient" ? "c" : "";
+  if (matrix.empty()) return {std::string(attribute)};
+  std::vector<std::string> names;
+  for (int c = 0; c < 9; ++c) names.push_back(fmt::format("{}_{}{}", matrix, c / 3, c % 3));
+  return names;
+}
+
+std::vector<std::string> other_columns(std::string_view material) {
+  std::vector<std::string> names;
+  Materials::with(material, [&]<class M>() {
+    for (const std::string_view name : M::template State<float>::names)
+      if (name != "jp" && !name.starts_with("f_")) names.emplace_back(name);
+  });
+  return names;
+}
+
+template <class R>
+void add_column(const World<R>& world, const Motion<R>& motion, std::size_t s, std::string_view column,
+                std::vector<float>& out) {
+  const auto& set = world.sets[s];
+  const auto& m = motion.sets[s];
+  if (column == "j") {
+    for (const R j : m.volume_ratio) out.push_back(static_cast<float>(j));
+  } else if (column == "density") {
+    for (const R j : m.volume_ratio)
+      out.push_back(static_cast<float>(set.mass / (set.rest_volume * static_cast<double>(j))));
+  } else if (column == "pressure") {
+    add_pressure(world, motion, s, out);
+  } else if (column.starts_with("c_")) {
+    for (const Mat3<R>& c : m.gradient) out.push_back(static_cast<float>(c(column[2] - '0', column[3] - '0')));
+  } else {
+    const bool is_one = column == "jp" || (column.starts_with("f_") && is_on_diagonal(column));
+    add_state(world, s, column, is_one ? 1.0f : 0.0f, out);
+  }
+}
+
 template <class R>
 ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, const std::vector<BodyRange>& bodies,
                              const std::vector<std::string>& attributes, const Vec3d& shift) {
@@ -74,9 +113,8 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
   const std::size_t n = world.particles();
   f.position.reserve(n);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const auto& set = world.sets[s];
     const auto& m = motion.sets[s];
-    f.material_names.push_back(set.name);
+    f.material_names.push_back(world.sets[s].name);
     const auto material = narrow<std::uint8_t>(s, "materials");
     const ParticleSetView particles(world, s);
     particles.for_each([&](std::size_t p, const Vec3d& x) {
@@ -85,18 +123,9 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
       f.material.push_back(material);
       f.velocity.push_back(static_cast<Vec3f>(m.velocity[p]));
     });
-    if (wanted("j"))
-      for (const R j : m.volume_ratio) f.columns["j"].push_back(static_cast<float>(j));
-    if (wanted("density"))
-      for (const R j : m.volume_ratio)
-        f.columns["density"].push_back(static_cast<float>(set.mass / (set.rest_volume * static_cast<double>(j))));
-    if (wanted("pressure")) add_pressure(world, motion, s, f.columns["pressure"]);
-    if (wanted("jp")) add_column(world, s, "jp", 1, f.columns["jp"]);
-    if (wanted("f"))
-      for (int c = 0; c < 9; ++c) {
-        const std::string name = fmt::format("f_{}{}", c / 3, c % 3);
-        add_column(world, s, name, c % 4 == 0 ? 1.0f : 0.0f, f.columns[name]);
-      }
+    for (const char* attribute : {"j", "density", "pressure", "jp", "f"})
+      if (wanted(attribute))
+        for (const std::string& column : columns_of(attribute)) add_column(world, motion, s, column, f.columns[column]);
   }
   if (wanted("color")) {
     f.color.assign(n, {255, 255, 255, 255});
@@ -114,6 +143,9 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
   return f;
 }
 
+template void add_column(const World<float>&, const Motion<float>&, std::size_t, std::string_view, std::vector<float>&);
+template void add_column(const World<double>&, const Motion<double>&, std::size_t, std::string_view,
+                         std::vector<float>&);
 template ParticleFrame particle_frame(const World<float>&, const Motion<float>&, const std::vector<BodyRange>&,
                                       const std::vector<std::string>&, const Vec3d&);
 template ParticleFrame particle_frame(const World<double>&, const Motion<double>&, const std::vector<BodyRange>&,

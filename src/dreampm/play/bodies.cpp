@@ -10,9 +10,9 @@
 #include "dreampm/import/import.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/pointer.h"
+#include "dreampm/queries.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -109,15 +109,11 @@ void Playground::Impl::drop(const std::string& name, const Vec3d& at, double siz
 }
 
 std::string Playground::Impl::body_at(const Vec3d& at) const {
-  return simulation->impl().with_engine([&](auto& engine) {
-    std::string name;
-    double nearest = touching * stage().scene.spacing();
-    for (const RigidBody& body : engine.world().rigid) {
-      const Collider& c = engine.world().colliders[body.collider];
-      if (const double distance = c.distance(at); distance < nearest) nearest = distance, name = c.name;
-    }
-    return name;
-  });
+  std::string name;
+  double nearest = touching * stage().scene.spacing();
+  for (const NearCollider& body : colliders_near(*simulation, at, nearest))
+    if (body.is_rigid && body.distance < nearest) nearest = body.distance, name = body.name;
+  return name;
 }
 
 void Playground::Impl::take_hold(const Vec3d& at, double radius) {
@@ -134,21 +130,10 @@ void Playground::Impl::hold_body() {
   simulation->hold(grab->body, {grab->at, grab->middle, body.mass * frequency * frequency, 2 * body.mass * frequency});
 }
 
-void Playground::Impl::release_bodies() {
-  simulation->impl().with_engine([](auto& engine) {
-    for (RigidBody& body : engine.world().rigid) body.hold.reset();
-  });
-}
-
 void Playground::Impl::push_bodies() {
-  release_bodies();
-  std::vector<std::string> touched;
-  simulation->impl().with_engine([&](auto& engine) {
-    for (const RigidBody& body : engine.world().rigid)
-      if (const Collider& c = engine.world().colliders[body.collider]; c.distance(push->at) < push->radius)
-        touched.push_back(c.name);
-  });
-  for (const std::string& name : touched) {
+  simulation->let_go();
+  for (const auto& [name, distance, is_rigid] : colliders_near(*simulation, push->at, push->radius)) {
+    if (!is_rigid) continue;
     // As the brush does to matter: the velocity there comes to that of the hand, at that rate.
     const ColliderState body = simulation->collider(name);
     const double rate = push_rate * settings.strength;

@@ -22,7 +22,7 @@ std::string Playground::Impl::main_material() const {
   if (!scene.emitters.empty())
     name = scene.materials.at(static_cast<std::size_t>(scene.emitters.front().material)).name;
   for (const scene::Material& m : scene.materials) {
-    const std::size_t count = simulation->particles(m.name).size();
+    const std::size_t count = simulation->particle_count(m.name);
     if (name.empty() || count > most) name = m.name, most = count;
   }
   return name;

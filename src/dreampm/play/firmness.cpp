@@ -7,9 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/state/particle_view.h"
-
 namespace dreampm::play {
 namespace {
 
@@ -35,8 +32,8 @@ struct Up {
 };
 
 /// m: from that place down to the nearest collider, or to the side of the box.
-template <class World>
-double way_down(const World& world, const Up& up, const scene::Space& space, const Vec3d& from) {
+double way_down(const std::vector<ColliderShape>& colliders, double cell, const Up& up, const scene::Space& space,
+                const Vec3d& from) {
   const double floor = up.sign > 0 ? space.min[up.axis] : -space.max[up.axis];
   const double whole = std::max(0.0, up.height(from) - floor);
   constexpr int most_looks = 64;
@@ -45,45 +42,52 @@ double way_down(const World& world, const Up& up, const scene::Space& space, con
     Vec3d x = from;
     x[up.axis] -= up.sign * way;
     double near = std::numeric_limits<double>::max();
-    for (const Collider& c : world.colliders) near = std::min(near, c.distance(x));
-    if (near < world.dx) break;
+    for (const ColliderShape& c : colliders) near = std::min(near, c.distance(x));
+    if (near < cell) break;
     way += near;
   }
   return std::min(way, whole);
 }
 
-template <class Engine>
-Press press_on(Engine& engine, std::size_t set, const Up& up, const scene::Space& space) {
-  const auto& world = engine.world();
+Press press_on(const Simulation& simulation, const std::string& material, const std::vector<ColliderShape>& colliders,
+               const Up& up, const scene::Space& space) {
   const int u = (up.axis + 1) % 3, v = (up.axis + 2) % 3;
-  const double side = world.dx;
+  const double side = simulation.stepping().cell;
   const auto square = [&](const Vec3d& x) {
     return std::pair{static_cast<std::int64_t>(std::floor(x[u] / side)),
                      static_cast<std::int64_t>(std::floor(x[v] / side))};
   };
   std::map<std::pair<std::int64_t, std::int64_t>, Column> columns;
   Press press;
-  const auto& velocity = engine.motion().sets[set].velocity;
-  ParticleSetView(world, set).for_each([&](std::size_t p, const Vec3d& x) {
-    Column& c = columns[square(x)];
-    if (up.height(x) < c.lowest) c.lowest = up.height(x), c.at = x;
-    press.speed2 += length2(static_cast<Vec3d>(velocity[p])) / static_cast<double>(world.sets[set].size());
+  const auto count = static_cast<double>(simulation.particle_count(material));
+  simulation.visit(material, {.velocity = true}, [&](const ParticleBatch& some) {
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const Vec3d& x = some.position[i];
+      Column& c = columns[square(x)];
+      if (up.height(x) < c.lowest) c.lowest = up.height(x), c.at = x;
+      press.speed2 += length2(some.velocity[i]) / count;
+    }
   });
-  for (std::size_t s = 0; s < world.sets.size(); ++s)
-    ParticleSetView(world, s).for_each([&](std::size_t, const Vec3d& x) {
-      const auto c = columns.find(square(x));
-      if (c == columns.end() || up.height(x) < c->second.lowest) return;
-      (s == set ? c->second.own : c->second.above) += world.sets[s].mass;
+  for (const std::string& other : simulation.scene().materials()) {
+    const double mass = simulation.material(other).particle_mass;
+    simulation.visit(other, {}, [&](const ParticleBatch& some) {
+      for (const Vec3d& x : some.position) {
+        const auto c = columns.find(square(x));
+        if (c == columns.end() || up.height(x) < c->second.lowest) continue;
+        (other == material ? c->second.own : c->second.above) += mass;
+      }
     });
+  }
   for (const auto& [at, c] : columns) {
     double above = (c.above + c.own) / (side * side);
-    for (const auto& body : world.rigid) {
-      const Box3d box = world.colliders[body.collider].bounds();
+    for (const ColliderShape& body : colliders) {
+      if (!body.is_rigid()) continue;
+      const Box3d box = body.bounds();
       if (c.at[u] < box.min[u] || c.at[u] > box.max[u] || c.at[v] < box.min[v] || c.at[v] > box.max[v]) continue;
-      if (up.height(box.center()) > c.lowest) above += body.mass / (box.size()[u] * box.size()[v]);
+      if (up.height(box.center()) > c.lowest) above += body.mass() / (box.size()[u] * box.size()[v]);
     }
     if (above > press.above) press.above = above, press.own = c.own / (side * side);
-    press.fall = std::max(press.fall, way_down(world, up, space, c.at));
+    press.fall = std::max(press.fall, way_down(colliders, side, up, space, c.at));
   }
   return press;
 }
@@ -107,10 +111,9 @@ std::vector<std::optional<Press>> presses_on(const Simulation& simulation) {
   for (std::size_t m = 0; m < presses.size(); ++m)
     if (is_asked(m)) asked.push_back(m);
   if (asked.empty()) return presses;
-  simulation.impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::position | MatterFields::motion);
-    for (const std::size_t m : asked) presses[m] = press_on(engine, m, Up(scene.gravity), scene.space);
-  });
+  const std::vector<ColliderShape> colliders = simulation.collider_shapes();
+  for (const std::size_t m : asked)
+    presses[m] = press_on(simulation, scene.materials[m].name, colliders, Up(scene.gravity), scene.space);
   return presses;
 }
 

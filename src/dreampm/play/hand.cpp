@@ -6,14 +6,12 @@
 #include <numbers>
 
 #include "dreampm/error.h"
+#include "dreampm/geometry/region.h"
 #include "dreampm/math/mat3.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/emission_pattern.h"
-#include "dreampm/state/particle_view.h"
-#include "dreampm/state/regroup.h"
 
 namespace dreampm::play {
 namespace {
@@ -40,7 +38,7 @@ void Playground::Impl::apply_hand(double seconds) {
   if (!(wanted == gravity)) simulation->set_gravity(gravity = wanted);
   if (const scene::Time& time = simulation->scene().description().time;
       time.solver == SolverKind::projection && time.cfl != settings.cfl)
-    simulation->impl().set_cfl(settings.cfl);
+    simulation->set_cfl(settings.cfl);
   shake = length(shake) < 0.05 ? Vec3d{} : shake * std::pow(shake_left, seconds);
   if (grab) {
     Vec3d velocity = (grab->hand - grab->middle) * hold_rate;
@@ -83,16 +81,15 @@ void Playground::Impl::pour_jet() {
   });
   if (places.empty()) return;
   const double far2 = std::pow(radius + 3 * spacing + speed * seconds, 2), near2 = std::pow(clear_way * spacing, 2);
-  simulation->impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::position);
-    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
-      ParticleSetView(engine.world(), s).for_each([&](std::size_t, const Vec3d& x) {
-        if (const Vec3d off = x - jet.at; dot(off, off) > far2) return;
+  for (const std::string& material : simulation->scene().materials())
+    simulation->visit(material, {}, [&](const ParticleBatch& some) {
+      for (const Vec3d& x : some.position) {
+        if (const Vec3d off = x - jet.at; dot(off, off) > far2) continue;
         std::erase_if(places, [&](const Vec3d& p) { return dot(x - p, x - p) < near2; });
-      });
-    for (const Collider& c : engine.world().colliders)
-      std::erase_if(places, [&](const Vec3d& p) { return c.distance(p) < 0.5 * spacing; });
-  });
+      }
+    });
+  for (const ColliderShape& c : simulation->collider_shapes())
+    std::erase_if(places, [&](const Vec3d& p) { return c.distance(p) < 0.5 * spacing; });
   if (places.empty()) return;
   if (simulation->particle_count() + places.size() > options.most_particles) {
     pour.reset();
@@ -104,10 +101,11 @@ void Playground::Impl::pour_jet() {
   const double most = most_contraction * speed / radius;
   const double drawn_out = std::clamp(dot(gravity, along) / speed, -most, most);
   const Mat3d gradient = (outer(along, along) * 3.0 - Mat3d::identity()) * (0.5 * drawn_out);
-  std::vector<ParticleSeed> seeds;
+  const auto row = [&](int a) { return Vec3d{gradient(a, 0), gradient(a, 1), gradient(a, 2)}; };
+  std::vector<NewParticle> particles;
   for (const Vec3d& p : places)
-    seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, jet.velocity + gradient * (p - jet.at), gradient});
-  simulation->impl().insert(simulation->impl().material(name), std::move(seeds), "pour");
+    particles.push_back({p, jet.velocity + gradient * (p - jet.at), {row(0), row(1), row(2)}});
+  simulation->add_particles(name, particles);
 }
 
 }  // namespace dreampm::play

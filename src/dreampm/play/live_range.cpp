@@ -10,11 +10,8 @@
 #include <utility>
 
 #include "dreampm/physics/dt.h"
-#include "dreampm/physics/materials.h"
 #include "dreampm/play/firmness.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/setup/assemble.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -24,26 +21,18 @@ constexpr int halvings = 12;
 
 constexpr std::array<std::string_view, 3> gravity_ids{"gravity.x", "gravity.y", "gravity.z"};
 
-/// What steps depend on besides the matter.
-struct Steps {
-  double cfl, dx, dt_max;
-  int contacts, stages;
-  bool sub_cycles, fixed;
-  bool large;  ///< of a projection: what makes explicit ones short hardly bounds them
+/// s of motion for what a step without stages costs, of such matter at rest.
+double reach(const Stepping& s, const MaterialState& m) {
+  const SignalSpeeds signals{0, m.sound_speed, 0, m.kinematic_viscosity, s.viscous_contacts};
+  const double dt = stable_dt(s.cfl, s.cell, signals, 1e30, s.dt_max, s.sub_cycles).dt;
+  return dt / (1 + (s.sub_cycles ? stage_cost * stages_of(dt, s.cell, m.kinematic_viscosity, s.viscous_contacts) : 0));
+}
 
-  /// s of motion for what a step without stages costs, of such matter at rest.
-  double reach(const MaterialFacts& f) const {
-    const SignalSpeeds signals{0, f.sound_speed, 0, f.kinematic_viscosity, contacts};
-    const double dt = stable_dt(cfl, dx, signals, 1e30, dt_max, sub_cycles).dt;
-    return dt / (1 + (sub_cycles ? stage_cost * stages_of(dt, dx, f.kinematic_viscosity, contacts) : 0));
-  }
-};
-
-MaterialFacts facts_with(scene::Material material, const ExpectedSpeed& expected) {
-  ParticleSet<double> set;
-  std::vector<std::string> notes;
-  use_material(set, material, World<double>{}, expected, notes);  // cells change no fact
-  return facts_of(*material.info, set.values);
+/// As if those were the values of all parameters of a material.
+MaterialState state_with(const Simulation& simulation, const scene::Material& material) {
+  std::vector<ParameterValue> values;
+  for (const auto& [key, value] : material.values) values.push_back({key, value});
+  return simulation.material(material.name, values);
 }
 
 /// The parameter that a control sets; empty where it is none of that material.
@@ -58,9 +47,9 @@ std::string key_of(const ControlInfo& c, const scene::Material& m) {
 class Firmness {
  public:
   Firmness(const Simulation& simulation, const std::vector<ControlInfo>& controls, const std::vector<double>& values)
-      : presses_(presses_on(simulation)),
-        materials_(simulation.scene().description().materials),
-        expected_(simulation.impl().state.expected) {
+      : simulation_(simulation),
+        presses_(presses_on(simulation)),
+        materials_(simulation.scene().description().materials) {
     for (const scene::Material& m : materials_) was_.push_back(m.values["density"]);
     for (std::size_t i = 0; i < controls.size(); ++i) {
       for (int a = 0; a < 3; ++a)
@@ -96,14 +85,14 @@ class Firmness {
   }
   double of(std::size_t m, const scene::Material& material, const Vec3d& gravity) const {
     if (!presses_[m]) return std::numeric_limits<double>::max();
-    const double density = material.values["density"], c = facts_with(material, expected_).sound_speed;
+    const double density = material.values["density"], c = state_with(simulation_, material).sound_speed;
     const double load = presses_[m]->load(length(gravity), density, was_[m]);
     return load > 0 ? density * c * c / load : std::numeric_limits<double>::max();
   }
 
+  const Simulation& simulation_;
   std::vector<std::optional<Press>> presses_;
   std::vector<scene::Material> materials_;  ///< as all is set
-  const ExpectedSpeed& expected_;
   Vec3d gravity_{};
   std::vector<double> was_;  ///< kg/m^3: density, as the particles have it
   std::vector<double> now_;
@@ -116,22 +105,18 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
   std::vector<LiveRange> all;
   for (const ControlInfo& c : controls) all.push_back({c.min, c.max});
   const std::vector<scene::Material>& materials = simulation.scene().description().materials;
-  std::vector<double> reach;
+  const Stepping steps = simulation.stepping();
+  const bool is_fixed = steps.fixed_dt > 0;
+  // What makes explicit steps short hardly bounds those of a projection.
+  const bool is_large = steps.solver == "projection";
+  std::vector<double> reaches;
   std::vector<bool> is_there;
-  const Steps steps = simulation.impl().with_engine([&](auto& engine) {
-    const auto& w = engine.world();
-    const Steps s{w.settings.cfl,          w.dx,
-                  w.settings.dt_max,       w.viscous_contacts(),
-                  w.viscous_stages,        w.settings.sub_cycles,
-                  w.settings.fixed_dt > 0, w.settings.solver == SolverKind::projection};
-    for (std::size_t m = 0; m < materials.size(); ++m) {
-      reach.push_back(s.reach(facts_of(*materials[m].info, w.sets[m].values)));
-      is_there.push_back(w.sets[m].size() > 0);
-    }
-    return s;
-  });
+  for (const scene::Material& m : materials) {
+    reaches.push_back(reach(steps, simulation.material(m.name)));
+    is_there.push_back(simulation.particle_count(m.name) > 0);
+  }
   const Firmness firmness(simulation, controls, values);
-  const double live = least_pace * asked * step_seconds / (1 + stage_cost * steps.stages);
+  const double live = least_pace * asked * step_seconds / (1 + stage_cost * steps.viscous_stages);
   for (std::size_t i = 0; i < controls.size(); ++i) {
     const ControlInfo& c = controls[i];
     if (!c.choices.empty()) continue;
@@ -158,14 +143,14 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
     for (std::size_t m = 0; m < materials.size(); ++m) {
       const std::string key = key_of(c, materials[m]);
       if (key.empty()) continue;
-      double needed = std::min(live, reach[m]);
+      double needed = std::min(live, reaches[m]);
       for (std::size_t other = 0; other < materials.size(); ++other)
-        if (other != m && is_there[other]) needed = std::min(needed, reach[other]);
+        if (other != m && is_there[other]) needed = std::min(needed, reaches[other]);
       const auto is_live = [&](double value) {
-        if (steps.fixed || steps.large) return true;
+        if (is_fixed || is_large) return true;
         scene::Material with = materials[m];
         with.values.set(key, value);
-        return steps.reach(facts_with(std::move(with), simulation.impl().state.expected)) >= needed * (1 - 1e-9);
+        return reach(steps, state_with(simulation, with)) >= needed * (1 - 1e-9);
       };
       narrow(is_live, [&](double value) { return firmness.holds(m, key, value); });
     }

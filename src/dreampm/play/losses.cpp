@@ -8,8 +8,6 @@
 #include "dreampm/play/action.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/state/particle_view.h"
 
 namespace dreampm::play {
 namespace {
@@ -21,14 +19,6 @@ constexpr double lossless = 5;
 
 constexpr std::array<const char*, 6> side_names{"the wall x_min", "the wall x_max", "the bottom",
                                                 "the top",        "the wall z_min", "the wall z_max"};
-
-/// Out of the world by themselves: what sinks took is not among them.
-template <class World>
-std::uint64_t gone_of(const World& world) {
-  std::uint64_t taken = 0;
-  for (const Sink& sink : world.sinks) taken += sink.taken;
-  return world.left - std::min(taken, world.left);
-}
 
 }  // namespace
 
@@ -45,15 +35,13 @@ void Playground::Impl::see_losses() {
   if (std::none_of(space.walls.begin(), space.walls.end(), [](const auto& w) { return w.type == WallType::open; }))
     return;
   std::array<std::uint64_t, 6> out{};
-  const std::uint64_t gone = simulation->impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::position);
-    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
-      ParticleSetView(engine.world(), s).for_each([&](std::size_t, const Vec3d& x) {
+  for (const std::string& material : simulation->scene().materials())
+    simulation->visit(material, {}, [&](const ParticleBatch& some) {
+      for (const Vec3d& x : some.position)
         for (int a = 0; a < 3; ++a)
           out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.max[a];
-      });
-    return gone_of(engine.world());
-  });
+    });
+  const std::uint64_t gone = simulation->counts().left;
   const std::uint64_t more = gone - std::min(gone, losses.seen);
   if (more > 0) {
     if (played > losses.last + lossless) losses.gone = {};
@@ -70,7 +58,7 @@ void Playground::Impl::see_losses() {
 
 void Playground::Impl::forget_losses() {
   losses = {.all = losses.all};
-  losses.seen = simulation->impl().with_engine([](auto& engine) { return gone_of(engine.world()); });
+  losses.seen = simulation->counts().left;
 }
 
 }  // namespace dreampm::play

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dreampm/error.h"
+#include "dreampm/physics/param.h"
 #include "dreampm/play/firmness.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/matter.h"
@@ -14,7 +15,6 @@
 #include "dreampm/play/report_looks.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -348,27 +348,20 @@ std::string Playground::Impl::remedy() const {
   if (!is_wave && meters.limiter != "viscosity") return known->second;
   std::string name;
   double most = 0;
-  const std::vector<scene::Material>& materials = simulation->scene().description().materials;
-  for (std::size_t m = 0; m < materials.size(); ++m) {
-    if (simulation->particle_count(materials[m].name) == 0) continue;
-    const MaterialFacts f = facts_of_material(m);
-    const double value = is_wave ? f.sound_speed : f.kinematic_viscosity;
-    if (value > most) most = value, name = materials[m].name;
+  for (const std::string& material : simulation->scene().materials()) {
+    if (simulation->particle_count(material) == 0) continue;
+    const MaterialState m = simulation->material(material);
+    const double value = is_wave ? m.sound_speed : m.kinematic_viscosity;
+    if (value > most) most = value, name = material;
   }
   return name.empty() ? known->second : fmt::format("{}: {}", name, known->second);
-}
-
-MaterialFacts Playground::Impl::facts_of_material(std::size_t m) const {
-  const scene::SceneDescription& scene = simulation->scene().description();
-  return facts_of(*scene.materials[m].info,
-                  simulation->impl().with_engine([&](auto& engine) { return engine.world().sets[m].values; }));
 }
 
 std::vector<std::string> Playground::Impl::facts() const {
   std::vector<std::string> lines;
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    const MaterialFacts f = facts_of_material(m);
+    const MaterialState f = simulation->material(scene.materials[m].name);
     if (is_projection(scene) && scene.materials[m].info->liquid) {
       const scene::Material& liquid = scene.materials[m];
       lines.push_back(fmt::format("{}: {:.4g} kg/m^3, incompressible", liquid.name, liquid.values["density"]));

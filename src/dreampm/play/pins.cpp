@@ -7,37 +7,30 @@
 #include "dreampm/error.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
 
 constexpr std::string_view prefix = "pin-";
 
-using Pins = std::vector<std::pair<std::string, Stroke>>;
-
 const Brush* pin_of(const dreampm::ForceField& field) {
   return field.name.starts_with(prefix) ? std::get_if<Brush>(&field.field) : nullptr;
 }
 
-/// Those among the fields of a world or of a scene.
-template <class Fields>
-Pins pins_among(const Fields& fields) {
+}  // namespace
+
+Pins pins_of(const Simulation& simulation) {
   Pins all;
-  for (const ForceField& field : fields)
-    if (const Brush* brush = pin_of(field))
-      all.emplace_back(field.name, Stroke{brush->point, brush->radius, brush->velocity, brush->rate});
+  for (const std::string& name : simulation.names().brushes)
+    if (name.starts_with(prefix)) all.emplace_back(name, *simulation.brush(name));
   return all;
 }
 
-Pins held(const Simulation& simulation) {
-  return simulation.impl().with_engine([](auto& engine) { return pins_among(engine.world().fields); });
-}
-
-}  // namespace
-
 Pins take_pins(Scene& scene) {
-  Pins all = pins_among(scene.description().fields);
+  Pins all;
+  for (const scene::ForceField& field : scene.description().fields)
+    if (const Brush* brush = pin_of(field))
+      all.emplace_back(field.name, Stroke{brush->point, brush->radius, brush->velocity, brush->rate});
   if (all.empty()) return all;
   scene::SceneDescription bare = scene.description();
   std::erase_if(bare.fields, [](const ForceField& field) { return pin_of(field) != nullptr; });
@@ -46,7 +39,7 @@ Pins take_pins(Scene& scene) {
 }
 
 void Playground::Impl::pin(const Stroke& hold) {
-  const auto all = held(*simulation);
+  const Pins all = pins_of(*simulation);
   const auto is_taken = [&](const std::string& name) {
     return std::any_of(all.begin(), all.end(), [&](const auto& pin) { return pin.first == name; });
   };
@@ -59,7 +52,7 @@ void Playground::Impl::pin(const Stroke& hold) {
 }
 
 void Playground::Impl::let_pins_go() {
-  const auto all = held(*simulation);
+  const Pins all = pins_of(*simulation);
   if (all.empty()) throw InputError("pin: nothing is held");
   history.separate();
   before_edit("pin off");
@@ -69,7 +62,7 @@ void Playground::Impl::let_pins_go() {
 
 std::vector<PinFrame> Playground::Impl::pins() const {
   std::vector<PinFrame> all;
-  for (const auto& [name, stroke] : held(*simulation))
+  for (const auto& [name, stroke] : pins_of(*simulation))
     all.push_back({static_cast<Vec3f>(stroke.point), static_cast<float>(stroke.radius)});
   return all;
 }

@@ -13,7 +13,6 @@
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -27,10 +26,9 @@ constexpr double ask_every = 4e-3;
 constexpr double slack_of_moving = 0.05;
 
 void loosen_surfaces(Simulation& simulation) {
-  simulation.impl().with_engine([](auto& engine) {
-    for (Collider& c : engine.world().colliders)
-      if (c.moves() && !c.changing) c.slack = std::max(c.slack, slack_of_moving);
-  });
+  for (const std::string& name : simulation.names().colliders)
+    if (const ColliderState c = simulation.collider(name); c.moves && !c.deforms)
+      simulation.set_slack(name, std::max(c.slack, slack_of_moving));
 }
 
 }  // namespace
@@ -94,7 +92,7 @@ void Playground::Impl::restart() {
 void Playground::Impl::let_go() {
   // The snapshot may be of a moment at which a hand was there.
   simulation->lift_brush("push"), simulation->lift_brush("grab");
-  release_bodies();
+  simulation->let_go();
   ages.back_to(simulation->time()), seen_until.reset();
   grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
@@ -133,7 +131,7 @@ int Playground::Impl::advance(const Limit& limit) {
     const auto at = std::chrono::steady_clock::now();
     const double before = simulation->time();
     // The force on a wall is the mean over the tick, in however many calls it is done.
-    const StepReport last = simulation->impl().advance_steps(count, taken > 0);
+    const StepReport last = simulation->advance_steps(count, taken > 0 ? ForceMean::goes_on : ForceMean::of_this_call);
     step_seconds = 0.5 * (step_seconds + seconds_since(at) / count);
     owed -= last.time - before;
     meters.taken_dt = last.dt;
@@ -265,12 +263,8 @@ void Playground::tell(const std::string& what, bool is_error) {
   share_message();
 }
 bool Playground::is_filmed() const { return !impl_->films->file.empty(); }
-int Playground::threads() const {
-  return impl_->simulation->impl().with_engine([](auto&) { return thread_count(); });
-}
-std::string Playground::isa() const {
-  return impl_->simulation->impl().with_engine([](auto& engine) { return std::string(engine.backend().isa()); });
-}
+int Playground::threads() const { return impl_->simulation->threads(); }
+std::string Playground::isa() const { return impl_->simulation->isa(); }
 const Simulation& Playground::simulation() const { return *impl_->simulation; }
 
 }  // namespace dreampm::play

@@ -9,7 +9,6 @@
 #include <utility>
 #include <vector>
 
-#include "dreampm/physics/param.h"
 #include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
@@ -33,9 +32,12 @@ inline constexpr double ticks_a_second = 60;
 /// 1/s at strength 1: how fast what is pushed takes on the velocity of the hand.
 inline constexpr double push_rate = 60;
 
-/// The pins of a saved scene, which are fields there, by name. They are taken out of it: pins of a
-/// playground can be let go.
-std::vector<std::pair<std::string, Stroke>> take_pins(Scene& scene);
+/// Pins are brushes of the simulation that stand still, by name.
+using Pins = std::vector<std::pair<std::string, Stroke>>;
+Pins pins_of(const Simulation& simulation);
+/// Those of a saved scene, which are fields there. They are taken out of it: pins of a playground
+/// can be let go.
+Pins take_pins(Scene& scene);
 
 /// 1/s: how fast what is pinned comes to rest.
 inline constexpr double pin_rate = 1e4;
@@ -164,7 +166,6 @@ struct Playground::Impl {
   /// The name of the material of that kind; the scene gets it where it has none.
   std::string ensure_matter(std::size_t kind);
   std::vector<std::string> facts() const;
-  MaterialFacts facts_of_material(std::size_t m) const;
   /// The member of a look that a control of a material sets; null for other controls.
   float* look_member(const std::string& id);
   std::string remedy() const;
@@ -197,8 +198,6 @@ struct Playground::Impl {
   std::string body_at(const Vec3d& at) const;
   void take_hold(const Vec3d& at, double radius);
   void hold_body();
-  /// Of all hands, those of a snapshot too.
-  void release_bodies();
   /// Takes the rigid bodies along that the hand which pushes touches.
   void push_bodies();
   /// Takes out the matter around, and the rigid body there.

@@ -12,18 +12,15 @@
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/setup/collider_mesh.h"
-#include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/state/particle_view.h"
 
 namespace dreampm::play {
 namespace {
 
-/// A number that matter can be colored by: its name, the column of a frame, or none for speed and
-/// age, which begin at 0, and where its scale lies: at least around `middle` as far as `least`.
+/// A number that matter can be colored by: its name, the attribute of particles, or none for speed
+/// and age, which begin at 0, and where its scale lies: at least around `middle` as far as `least`.
 /// `of_cell`: as a mean over a cell, because single particles jump.
 struct Coloring {
-  std::string_view choice, column, unit;
+  std::string_view choice, attribute, unit;
   float middle, least;
   bool of_cell = false;
 };
@@ -41,7 +38,7 @@ std::array<float, 2> range_of(const Frame& frame, const Coloring& coloring) {
   if (all.empty()) return {coloring.middle, coloring.middle + coloring.least};
   std::sort(all.begin(), all.end());
   const std::size_t off = all.size() / 40;
-  const bool from_zero = coloring.column.empty();
+  const bool from_zero = coloring.attribute.empty();
   return {from_zero ? 0 : std::min(all[off], coloring.middle - coloring.least),
           std::max(all[all.size() - 1 - off], coloring.middle + coloring.least)};
 }
@@ -60,47 +57,38 @@ Vec3d moved(const Vec3d& from, const Vec3d& way, const Box3d& box) {
 
 /// `ahead` [s]: how much later than the simulation matter is shown, as it moves now.
 void read_positions(const Simulation& simulation, bool random_colors, double ahead, Frame& frame) {
-  simulation.impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::position | MatterFields::motion |
-                    (random_colors ? MatterFields::id : MatterFields::position));
-    for (std::size_t s = 0; s < engine.world().sets.size(); ++s) {
-      const ParticleSetView particles(engine.world(), s);
-      MatterFrame& matter = frame.matter[s];
-      matter.position.resize(particles.size());
-      matter.value.clear();
-      const auto& velocity = engine.motion().sets[s].velocity;
-      particles.for_each([&](std::size_t p, const Vec3d& x) {
-        matter.position[p] =
-            static_cast<Vec3f>(ahead == 0 ? x : moved(x, static_cast<Vec3d>(velocity[p]) * ahead, frame.domain));
-      });
-      matter.color.clear();
-      if (random_colors)
-        for (std::size_t p = 0; p < particles.size(); ++p) matter.color.push_back(random_color(particles.id(p)));
-    }
-  });
+  for (MatterFrame& matter : frame.matter) {
+    matter.position.resize(simulation.particle_count(matter.name));
+    matter.value.clear(), matter.color.clear();
+    simulation.visit(matter.name, {.velocity = ahead != 0, .id = random_colors}, [&](const ParticleBatch& some) {
+      for (std::size_t i = 0; i < some.size(); ++i) {
+        const Vec3d& x = some.position[i];
+        matter.position[some.first + i] =
+            static_cast<Vec3f>(ahead == 0 ? x : moved(x, some.velocity[i] * ahead, frame.domain));
+      }
+      for (const std::uint32_t id : some.id) matter.color.push_back(random_color(id));
+    });
+  }
 }
 
 void read_values(const Simulation& simulation, const Coloring& coloring, const Ages& ages, double ahead, Frame& frame) {
-  const ParticleFrame particles = simulation.impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::id | MatterFields::position | MatterFields::motion | MatterFields::state);
-    return particle_frame(engine.world(), engine.motion(), {}, {std::string(coloring.column)}, {});
-  });
-  for (MatterFrame& m : frame.matter) m.position.clear(), m.value.clear(), m.color.clear();
-  // Without particles there are no columns.
-  const auto found = particles.columns.find(std::string(coloring.column));
-  const std::vector<float>* column = found == particles.columns.end() ? nullptr : &found->second;
-  const auto value = [&](std::size_t i) {
-    if (column) return (*column)[i];
-    if (coloring.choice == "age") return ages.age(static_cast<std::uint32_t>(particles.id[i]), simulation.time());
-    return length(particles.velocity[i]);
-  };
-  for (std::size_t i = 0; i < particles.position.size(); ++i) {
-    MatterFrame& m = frame.matter[particles.material[i]];
-    m.position.push_back(
-        ahead == 0 ? particles.position[i]
-                   : static_cast<Vec3f>(moved(static_cast<Vec3d>(particles.position[i]),
-                                              static_cast<Vec3d>(particles.velocity[i]) * ahead, frame.domain)));
-    m.value.push_back(value(i));
+  for (MatterFrame& m : frame.matter) {
+    m.position.clear(), m.value.clear(), m.color.clear();
+    const ParticleView particles = simulation.particles(m.name);
+    if (!coloring.attribute.empty()) {
+      const AttributeView values = simulation.attribute(m.name, coloring.attribute);
+      m.value.assign(values.values.begin(), values.values.end());
+    }
+    for (std::size_t i = 0; i < particles.size(); ++i) {
+      const Vec3f &x = particles.position[i], &v = particles.velocity[i];
+      m.position.push_back(
+          ahead == 0 ? x
+                     : static_cast<Vec3f>(moved(static_cast<Vec3d>(x), static_cast<Vec3d>(v) * ahead, frame.domain)));
+      if (coloring.choice == "age")
+        m.value.push_back(ages.age(particles.id[i], simulation.time()));
+      else if (coloring.attribute.empty())
+        m.value.push_back(length(v));
+    }
   }
   if (coloring.of_cell)
     for (MatterFrame& m : frame.matter) average_over_cells(m.position, 2 * frame.spacing, m.value);
@@ -134,25 +122,24 @@ bool is_drawn(const scene::Collider& c) {
   return !c.pin && !c.sequence;
 }
 
-BodyFrame body_of(const scene::SceneDescription& scene, const scene::Collider& c) {
-  const scene::Look& look = scene.render.looks.at(c.name);
+BodyFrame body_of(const Simulation& simulation, const scene::Collider& c) {
+  const scene::Look& look = simulation.scene().description().render.looks.at(c.name);
   const bool clear = look.type == scene::LookType::dielectric;
-  const Box3d room{scene.space.min, scene.space.max};
   return {c.name,
           c.rigid.has_value(),
-          std::make_shared<const TriMesh>(collider_mesh(c.shape, 0.5 * scene.space.dx(), room, {}, c.thickness)),
+          std::make_shared<const TriMesh>(simulation.collider_mesh(c.name)),
           {},
           clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
           clear ? 0.25f : 1.0f};
 }
 
 /// Makes `bodies` those of the scene; those of a name that was there already stay as they were.
-void list_bodies(const scene::SceneDescription& scene, std::vector<BodyFrame>& bodies) {
+void list_bodies(const Simulation& simulation, std::vector<BodyFrame>& bodies) {
   const std::vector<BodyFrame> before = std::exchange(bodies, {});
-  for (const scene::Collider& c : scene.colliders) {
+  for (const scene::Collider& c : simulation.scene().description().colliders) {
     if (!is_drawn(c)) continue;
     const auto known = std::find_if(before.begin(), before.end(), [&](const BodyFrame& b) { return b.name == c.name; });
-    bodies.push_back(known == before.end() ? body_of(scene, c) : *known);
+    bodies.push_back(known == before.end() ? body_of(simulation, c) : *known);
   }
 }
 
@@ -160,13 +147,11 @@ void list_bodies(const scene::SceneDescription& scene, std::vector<BodyFrame>& b
 
 void Playground::Impl::see_new_matter() {
   const double now = simulation->time();
-  const std::uint32_t next = simulation->impl().state.next_id;
-  simulation->impl().with_engine([&](auto& engine) {
-    if (seen_until == next && engine.world().emitters.empty()) return;
-    engine.download(MatterFields::id);
-    for (std::size_t s = 0; s < engine.world().sets.size(); ++s)
-      ages.see(ParticleSetView(engine.world(), s).ids(), now);
-  });
+  const std::uint32_t next = simulation->next_id();
+  if (seen_until == next) return;
+  for (const std::string& material : simulation->scene().materials())
+    simulation->visit(material, {.position = false, .id = true},
+                      [&](const ParticleBatch& some) { ages.see(some.id, now); });
   seen_until = next;
 }
 
@@ -197,7 +182,7 @@ void Playground::Impl::read(Frame& frame) {
     read_positions(*simulation, settings.random_colors != 0, ahead, frame);
   else
     read_values(*simulation, *coloring, ages, ahead, frame);
-  list_bodies(scene, bodies);
+  list_bodies(*simulation, bodies);
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
   frame.room = room();

@@ -7,11 +7,8 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
-#include "dreampm/play/finer.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/setup/start.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -45,18 +42,12 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   }
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
-  simulation->dt();  // the grid is formed anew, where there were edits
-  simulation->impl().with_engine([&](auto& engine) {
-    engine.download(MatterFields::all);
-    // Pins hold on.
-    for (const ForceField& field : engine.world().fields)
-      if (field.name.starts_with("pin-")) now.fields.push_back({field, {}});
-    const ExpectedSpeed& expected = simulation->impl().state.expected;
-    if (as.finer)
-      write_finer(moment, engine.world(), engine.motion(), now, expected);
-    else
-      write_start(moment, engine.world(), engine.motion(), expected);
-  });
+  for (const auto& [name, hold] : pins_of(*simulation))  // they hold on
+    now.fields.push_back({{name, Brush{hold.point, hold.radius, hold.velocity, hold.rate}, std::nullopt}, {}});
+  if (as.finer)
+    simulation->save_moment(moment, Scene(now, moment.string()));
+  else
+    simulation->save_moment(moment);
   // Beside the scene, which is looked in first.
   now.start = moment.filename().string();
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());

@@ -10,7 +10,6 @@
 #include "dreampm/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/matter.h"
-#include "dreampm/setup/projection_checks.h"
 
 namespace dreampm::play {
 namespace {
@@ -31,8 +30,8 @@ std::string without_place(std::string line) {
 }
 
 /// What the scene is refused for, first of list; empty: nothing.
-std::string refusal(const scene::SceneDescription& scene) {
-  const std::vector<std::string> lines = projection_refusals(scene, "");
+std::string refusal(scene::SceneDescription scene) {
+  const std::vector<std::string> lines = refused_parts(Scene(std::move(scene), ""));
   return lines.empty() ? "" : without_place(lines.front());
 }
 
@@ -80,7 +79,7 @@ std::string why_not_other(const Stage& stage) {
   if (stage.other || is_projection(scene)) return "";
   scene::SceneDescription with = scene;
   with.time.solver = SolverKind::projection, with.time.cfl = usual_projection_cfl;
-  return refusal(with);
+  return refusal(std::move(with));
 }
 
 Stage by_solver(Stage stage, SolverKind solver) {

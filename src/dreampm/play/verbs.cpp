@@ -186,7 +186,7 @@ const std::vector<Verb>& verbs() {
          const Vec3d at = place_at(p, a, 0);
          const double radius = size_at(p, a, 3);
          p.before_edit("grab");
-         p.release_bodies();
+         p.simulation->let_go();
          p.take_hold(at, radius);
        }},
       {"pull", "X Y Z", "draws what is held to that place",
@@ -197,7 +197,7 @@ const std::vector<Verb>& verbs() {
        [](Impl& p, const Action&) {
          p.grab.reset(), p.push.reset();
          p.simulation->lift_brush("push"), p.simulation->lift_brush("grab");
-         p.release_bodies();
+         p.simulation->let_go();
          if (p.history.last_edit() != "push") p.history.separate();
        }},
       {"pour", "X Y Z RADIUS VX VY VZ | off", "a jet of the chosen matter, three spacings in radius at least",

@@ -11,7 +11,6 @@
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/play/wall_face.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -42,7 +41,7 @@ struct WallAxis {
 WallAxis axis_of(std::size_t side) { return {static_cast<int>(side) / 2, side % 2 == 1}; }
 
 /// Whether some part of a body lies on that plane across the wall's axis.
-bool reaches(const Collider& body, int axis, double plane) {
+bool reaches(const ColliderShape& body, int axis, double plane) {
   constexpr int samples = 16;
   const Box3d box = body.bounds();
   if (plane < box.min[axis] || plane > box.max[axis]) return false;
@@ -65,14 +64,10 @@ std::string wall_name(std::size_t side) { return fmt::format("wall-{}", scene::w
 double Playground::Impl::wall_at(std::size_t side) const {
   const auto [axis, is_high] = axis_of(side);
   const scene::Space& space = simulation->scene().description().space;
-  return simulation->impl().with_engine([&, axis = axis, is_high = is_high](auto& engine) {
-    for (const Collider& c : engine.world().colliders)
-      if (c.name == wall_name(side)) {
-        const Box3d box = c.shape->bounds();
-        return c.pose.position[axis] + (is_high ? box.min[axis] : box.max[axis]);
-      }
-    return is_high ? space.max[axis] : space.min[axis];
-  });
+  if (!has_slab(side)) return is_high ? space.max[axis] : space.min[axis];
+  const std::string name = wall_name(side);
+  const Box3d box = simulation->collider_shape(name).own_bounds();
+  return simulation->collider(name).pose.position[axis] + (is_high ? box.min[axis] : box.max[axis]);
 }
 
 bool Playground::Impl::has_slab(std::size_t side) const {
@@ -168,10 +163,9 @@ void Playground::Impl::move_walls() {
         const double area = size.x * size.y * size.z / size[w.axis];
         const double pressure = std::max(0.0, state.force[w.axis] * w.sign()) / area;
         speed *= std::max(0.0, 1 - pressure / most_pressure);
-        const bool is_held = simulation->impl().with_engine([&](auto& engine) {
-          for (const RigidBody& body : engine.world().rigid)
-            if (reaches(engine.world().colliders[body.collider], w.axis, at + w.sign() * most_inside * dx)) return true;
-          return false;
+        const std::vector<ColliderShape> shapes = simulation->collider_shapes();
+        const bool is_held = std::any_of(shapes.begin(), shapes.end(), [&](const ColliderShape& body) {
+          return body.is_rigid() && reaches(body, w.axis, at + w.sign() * most_inside * dx);
         });
         if (is_held || is_full()) speed = 0;
       }

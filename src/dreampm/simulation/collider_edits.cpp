@@ -16,6 +16,9 @@
 namespace dreampm {
 namespace {
 
+/// Cells that a surface may be off its collider's pose.
+constexpr double most_slack = 0.25;
+
 std::size_t number_of(const SceneDescription& scene, std::string_view name) {
   const auto at =
       std::find_if(scene.colliders.begin(), scene.colliders.end(), [&](const auto& c) { return c.name == name; });
@@ -126,18 +129,6 @@ void take_out(Simulation::Impl& impl, std::string_view name) {
   impl.state.edited = true;
 }
 
-/// Throws InputError where there is no rigid body of that name.
-template <class World>
-auto& rigid_body(World& world, std::string_view name) {
-  std::string names;
-  for (auto& body : world.rigid) {
-    const std::string& own = world.colliders[body.collider].name;
-    if (own == name) return body;
-    names += (names.empty() ? "" : ", ") + own;
-  }
-  fail_input("rigid body {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
-}
-
 }  // namespace
 
 void Simulation::add_rigid(const NewRigid& body) {
@@ -151,7 +142,7 @@ void Simulation::add_rigid(const NewRigid& body) {
 }
 
 void Simulation::remove_rigid(std::string_view name) {
-  impl_->with_engine([&](auto& engine) { rigid_body(engine.world(), name); });
+  impl_->with_engine([&](auto& engine) { impl_->rigid_body(engine.world(), name); });
   take_out(*impl_, name);
 }
 
@@ -160,17 +151,29 @@ void Simulation::hold(std::string_view rigid, const Grip& grip) {
       !std::isfinite(grip.stiffness + grip.damping))
     fail_input("hold: at and to must be finite, stiffness above 0 and damping at least 0");
   impl_->with_engine([&](auto& engine) {
-    rigid_body(engine.world(), rigid).hold = Hold{grip.at, {grip.to, grip.stiffness, grip.damping}};
+    impl_->rigid_body(engine.world(), rigid).hold = Hold{grip.at, {grip.to, grip.stiffness, grip.damping}};
   });
 }
 
 void Simulation::let_go(std::string_view rigid) {
-  impl_->with_engine([&](auto& engine) { rigid_body(engine.world(), rigid).hold.reset(); });
+  impl_->with_engine([&](auto& engine) { impl_->rigid_body(engine.world(), rigid).hold.reset(); });
+}
+
+void Simulation::let_go() {
+  impl_->with_engine([](auto& engine) {
+    for (RigidBody& body : engine.world().rigid) body.hold.reset();
+  });
+}
+
+void Simulation::set_slack(std::string_view collider, double slack) {
+  if (!(slack > 0 && slack <= most_slack))
+    fail_input("set_slack: slack is {}: must be above 0 to {} cells", slack, most_slack);
+  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).slack = slack; });
 }
 
 void Simulation::add_collider(const NewCollider& collider) {
-  if (!(collider.slack > 0 && collider.slack <= 0.25))
-    fail_input("add_collider: slack is {}: must be above 0 to 0.25 cells", collider.slack);
+  if (!(collider.slack > 0 && collider.slack <= most_slack))
+    fail_input("add_collider: slack is {}: must be above 0 to {} cells", collider.slack, most_slack);
   refuse_taken(scene().description(), collider.name, "add_collider");
   // Those that are without friction may not say that they have none.
   const std::string friction = collider.friction != 0 ? fmt::format(", friction: {}", collider.friction) : "";

@@ -48,10 +48,10 @@ Scene Simulation::Impl::edited_scene(const std::vector<std::string>& set) const 
   return with;
 }
 
-void Simulation::Impl::set_cfl(double cfl) {
-  state.scene = edited_scene({fmt::format("time.cfl={}", cfl)});
-  with_engine([&](auto& engine) { engine.world().settings.cfl = cfl; });
-  state.edited = true;
+void Simulation::set_cfl(double cfl) {
+  impl_->state.scene = impl_->edited_scene({fmt::format("time.cfl={}", cfl)});
+  impl_->with_engine([&](auto& engine) { engine.world().settings.cfl = cfl; });
+  impl_->state.edited = true;
 }
 
 std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> seeds, const std::string& what) {
@@ -265,21 +265,36 @@ void Simulation::add(const NewBody& body) {
 }
 
 void Simulation::add_particles(std::string_view material, std::span<const Vec3d> positions, const Vec3d& velocity) {
+  if (!is_finite(velocity)) fail_input("add_particles: the velocity must be finite numbers");
+  std::vector<NewParticle> particles;
+  particles.reserve(positions.size());
+  for (const Vec3d& p : positions) particles.push_back({p, velocity});
+  add_particles(material, particles);
+}
+
+void Simulation::add_particles(std::string_view material, std::span<const NewParticle> particles) {
   const std::size_t m = impl_->material(material);
   const scene::Space& space = scene().description().space;
   std::vector<ParticleSeed> seeds;
-  seeds.reserve(positions.size());
-  if (!is_finite(velocity)) fail_input("add_particles: the velocity must be finite numbers");
-  for (const Vec3d& p : positions) {
+  std::vector<Vec3d> positions;
+  seeds.reserve(particles.size()), positions.reserve(particles.size());
+  for (const NewParticle& one : particles) {
+    const auto& [p, v, gradient] = one;
+    if (!is_finite(v) || !std::all_of(gradient.begin(), gradient.end(), [](const Vec3d& g) { return is_finite(g); }))
+      fail_input("add_particles: velocities and their gradients must be finite numbers");
     if (!is_finite(p) || max(min(p, space.max), space.min) != p)
       fail_input("add_particles: a particle at ({:.4g}, {:.4g}, {:.4g}) m is outside of the walls", p.x, p.y, p.z);
-    seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, velocity, Mat3d{}});
+    Mat3d c;
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) c(a, b) = gradient[static_cast<std::size_t>(a)][b];
+    seeds.push_back({static_cast<std::uint32_t>(seeds.size()), p, v, c});
+    positions.push_back(p);
   }
   if (seeds.empty()) return;
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     const World<R>& world = engine.world();
     for (std::size_t c = 0; c < world.colliders.size(); ++c)
-      if (const Overlap in = matter_inside({positions.begin(), positions.end()}, world, c);
+      if (const Overlap in = matter_inside(positions, world, c);
           !world.colliders[c].holds && in.depth > shallow_overlap * world.dx)
         fail_input(
             "add_particles: {} of {} particles lie inside of collider {}, up to {:.3g} m deep: put them elsewhere",

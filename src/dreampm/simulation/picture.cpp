@@ -8,7 +8,7 @@
 namespace dreampm {
 
 RgbImage render(const Simulation& simulation, const PictureOptions& options) {
-  const Simulation::Impl& impl = simulation.impl();
+  const Simulation::Impl& impl = SimulationAccess::impl(simulation);
   SceneDescription scene = simulation.scene().description();
   scene.bodies.insert(scene.bodies.end(), impl.state.added.begin(), impl.state.added.end());
   RenderSettings settings = render_settings(scene);

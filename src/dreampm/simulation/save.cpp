@@ -1,5 +1,8 @@
-// Writes a simulation as a scene that goes on from its moment.
+// Writes a simulation as a scene that goes on from its moment, and goes on from one.
 #include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <utility>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -8,6 +11,7 @@
 #include "dreampm/scene/files.h"
 #include "dreampm/scene/sections.h"
 #include "dreampm/setup/start.h"
+#include "dreampm/simulation/finer.h"
 #include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm {
@@ -29,9 +33,7 @@ void Simulation::save(const std::filesystem::path& file) const {
   check_replaceable(file);
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
-  impl_->settle();
   impl_->with_engine([&](auto& engine) {
-    engine.download(MatterFields::all);
     const auto& world = engine.world();
     for (std::size_t f = now.fields.size(); f < world.fields.size(); ++f) {
       const std::string& name = world.fields[f].name;
@@ -43,11 +45,43 @@ void Simulation::save(const std::filesystem::path& file) const {
     // The motion that a program set is in the moment; a scene has no word for it.
     for (std::size_t c = 0; c < world.colliders.size(); ++c)
       if (!world.colliders[c].path) now.colliders.at(c).motion.reset();
-    write_start(moment, world, engine.motion(), impl_->state.expected);
   });
+  save_moment(moment);
   // Beside the scene, where it is looked for first.
   now.start = moment.filename().string();
   replace_file_text(file, scene::emit_scene(now));
+}
+
+void Simulation::save_moment(const std::filesystem::path& file) const {
+  impl_->settle();
+  impl_->with_engine([&](auto& engine) {
+    engine.download(MatterFields::all);
+    write_start(file, engine.world(), engine.motion(), impl_->state.expected);
+  });
+}
+
+void Simulation::save_moment(const std::filesystem::path& file, const Scene& finer) const {
+  const SceneDescription &own = scene().description(), &other = finer.description();
+  const bool fits = other.space.spacing == own.space.spacing / 2 && other.space.min == own.space.min &&
+                    other.space.max == own.space.max && finer.materials() == scene().materials() &&
+                    other.colliders.size() == own.colliders.size() && other.emitters.size() == own.emitters.size();
+  if (!fits)
+    fail_input("save_moment: {} must be {} with space.spacing {:.6g} m, half of what it is, and all else as it is",
+               finer.name(), own.name, own.space.spacing / 2);
+  impl_->settle();
+  impl_->with_engine([&](auto& engine) {
+    engine.download(MatterFields::all);
+    write_finer(file, engine.world(), engine.motion(), other, finer.file(), impl_->state.expected);
+  });
+}
+
+void Simulation::load(const std::filesystem::path& file) {
+  if (impl_->under_way > 0)
+    fail_input("load: {} cannot be loaded while steps are under way: not inside of an observer", file.string());
+  auto next = std::make_unique<Impl>(load_scene(file), impl_->options);
+  next->step_observers = std::move(impl_->step_observers);
+  next->frame_observers = std::move(impl_->frame_observers);
+  impl_ = std::move(next);
 }
 
 }  // namespace dreampm

@@ -3,6 +3,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
+#include "dreampm/setup/projection_checks.h"
 
 namespace dreampm {
 
@@ -56,6 +57,10 @@ std::string Scene::yaml() const { return scene::emit_scene(data_->description); 
 Scene Scene::with(const std::vector<std::string>& set) const { return parse_scene(yaml(), file(), {"", set}); }
 
 const SceneDescription& Scene::description() const { return data_->description; }
+
+std::vector<std::string> refused_parts(const Scene& scene) {
+  return projection_refusals(scene.description(), scene.file());
+}
 
 Scene load_scene(const std::filesystem::path& file, const SceneOptions& options, std::vector<std::string>* warnings) {
   return checked(scene::parse_scene(file, parse_options(options)), file.string(), warnings);

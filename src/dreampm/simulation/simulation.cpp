@@ -61,8 +61,9 @@ struct Simulation::Impl::Relay final : Observer<R> {
   ProbeSet<R> probes;
 };
 
-Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& options)
-    : state{scene, {}, {}, {}, 0, {}, 0, false, 0},
+Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& given)
+    : options(given),
+      state{scene, {}, {}, {}, 0, {}, 0, false, 0},
       host_(options.host),
       threads_(std::make_unique<ThreadArena>(options.threads)) {
   threads_->run([&] {
@@ -109,10 +110,10 @@ std::uint32_t Simulation::Impl::first_free_id() const {
 }
 
 std::size_t Simulation::Impl::material(std::string_view name) const {
-  const std::vector<std::string> names = state.scene.materials();
-  const auto at = std::find(names.begin(), names.end(), name);
-  if (at == names.end()) fail_input("material {} is not in the scene; it has {}", name, fmt::join(names, ", "));
-  return static_cast<std::size_t>(at - names.begin());
+  const std::vector<scene::Material>& all = state.scene.description().materials;
+  const auto at = std::find_if(all.begin(), all.end(), [&](const scene::Material& m) { return m.name == name; });
+  if (at == all.end()) fail_unknown("material", name, state.scene.materials());
+  return static_cast<std::size_t>(at - all.begin());
 }
 
 void Simulation::Impl::settle() const {
@@ -155,6 +156,7 @@ const ParticleFrame& Simulation::Impl::frame() const {
 
 template <class Done, class Capture>
 StepSums Simulation::Impl::advance(const Done& done, const Capture& capture) {
+  const TakesSteps now(*this);
   return with_engine([&](auto& engine) {
     return engine.advance([&] { return done(engine.world()); },
                           [&](const auto& world) {
@@ -173,6 +175,7 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 StepReport Simulation::step() {
   impl_->settle();
   impl_->received = {};
+  const Impl::TakesSteps now(*impl_);
   return impl_->report(impl_->with_engine([](auto& engine) { return engine.step(always); }));
 }
 
@@ -192,18 +195,13 @@ void Simulation::advance_frames(int count) {
   impl_->advance([&](const auto& world) { return world.frame >= last; }, [](const auto&) { return false; });
 }
 
-StepReport Simulation::advance_steps(int count) {
+StepReport Simulation::advance_steps(int count, ForceMean mean) {
   if (count < 1) fail_input("advance_steps: {} steps: must be 1 or more", count);
-  return impl_->advance_steps(count, false);
-}
-
-StepReport Simulation::Impl::advance_steps(int count, bool goes_on) {
-  settle();
-  if (!goes_on) received = {};
-  const std::uint64_t last =
-      with_engine([](auto& engine) { return engine.world().step; }) + static_cast<std::uint64_t>(count);
-  return report(advance([&](const auto& world) { return world.step >= last; },
-                        [&](const auto& world) { return world.step + 1 == last; }));
+  impl_->settle();
+  if (mean == ForceMean::of_this_call) impl_->received = {};
+  const std::uint64_t last = steps() + static_cast<std::uint64_t>(count);
+  return impl_->report(impl_->advance([&](const auto& world) { return world.step >= last; },
+                                      [&](const auto& world) { return world.step + 1 == last; }));
 }
 
 double Simulation::time() const {
@@ -286,42 +284,20 @@ Totals Simulation::totals() const {
     const Balance b = engine.balance();
     const EditSums& e = impl_->state.edits;
     Totals t;
-    t.particles = engine.world().particles();
+    static_cast<ParticleCounts&>(t) = counts();
     t.mass = b.mass, t.momentum = b.momentum;
     t.kinetic = b.kinetic, t.elastic = b.elastic, t.volume = b.volume;
-    t.entered = e.entered, t.removed = e.removed;
-    for (const Sink& sink : engine.world().sinks) t.drained += sink.taken;
-    // The world's own count is of both.
-    t.left = engine.world().left - t.drained;
     t.entered_mass = e.entered_mass, t.removed_mass = e.removed_mass;
     t.entered_momentum = e.entered_momentum, t.removed_momentum = e.removed_momentum;
     return t;
   });
 }
 
-ColliderState Simulation::collider(std::string_view name) const {
-  return impl_->with_engine([&](auto& engine) {
-    const auto& world = engine.world();
-    const Collider& c = impl_->collider(world, name);
-    ColliderState state{c.pose, c.twist, 0, {}};
-    const auto number = static_cast<std::size_t>(&c - world.colliders.data());
-    for (const RigidBody& body : world.rigid)
-      if (body.collider == number) state.mass = body.mass;
-    const Impl::Received& received = impl_->received;
-    if (number < received.impulse.size() && received.seconds > 0)
-      state.force = received.impulse[number] / -received.seconds;
-    return state;
-  });
-}
-
 const ProbeSeries& Simulation::probe(std::string_view name) const {
   const std::vector<scene::Probe>& probes = impl_->state.scene.description().probes;
-  std::string names;
-  for (std::size_t p = 0; p < probes.size(); ++p) {
+  for (std::size_t p = 0; p < probes.size(); ++p)
     if (probes[p].name == name) return impl_->state.probes[p];
-    names += (names.empty() ? "" : ", ") + probes[p].name;
-  }
-  fail_input("probe {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
+  fail_unknown("probe", name, names().probes);
 }
 
 std::uint64_t Simulation::hash() const {

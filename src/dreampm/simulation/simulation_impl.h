@@ -48,8 +48,11 @@ struct Snapshot::Data {
   ProbeMemories probes;
 };
 
+/// Says which names there are instead.
+[[noreturn]] void fail_unknown(std::string_view kind, std::string_view name, const std::vector<std::string>& names);
+
 struct Simulation::Impl {
-  Impl(const Scene& scene, const SimulationOptions& options);
+  Impl(const Scene& scene, const SimulationOptions& given);
 
   /// Calls f(engine) with the engine of the precision at hand, on this simulation's threads, its
   /// host the current one.
@@ -73,8 +76,6 @@ struct Simulation::Impl {
 
   /// Lays the values over the scene as it is. Throws InputError, for what its solver cannot do too.
   Scene edited_scene(const std::vector<std::string>& set) const;
-  /// Cells that sound or matter may cross in a step from now on (`time.cfl`). Throws InputError.
-  void set_cfl(double cfl);
   /// Above those of all particles.
   std::uint32_t first_free_id() const;
   /// The number of a material of the scene. Throws InputError.
@@ -82,12 +83,19 @@ struct Simulation::Impl {
   /// Throws InputError for a name that the world has not.
   template <class World>
   static auto& collider(World& world, std::string_view name) {
-    std::string names;
-    for (auto& c : world.colliders) {
+    for (auto& c : world.colliders)
       if (c.name == name) return c;
-      names += (names.empty() ? "" : ", ") + c.name;
-    }
-    fail_input("collider {} is not in the scene; it has {}", name, names.empty() ? "none" : names);
+    std::vector<std::string> names;
+    for (const Collider& c : world.colliders) names.push_back(c.name);
+    fail_unknown("collider", name, names);
+  }
+  template <class World>
+  static auto& rigid_body(World& world, std::string_view name) {
+    for (auto& body : world.rigid)
+      if (world.colliders[body.collider].name == name) return body;
+    std::vector<std::string> names;
+    for (const RigidBody& body : world.rigid) names.push_back(world.colliders[body.collider].name);
+    fail_unknown("rigid body", name, names);
   }
   /// Brings in particles of material m, whose ids count from 0, and counts them; the id of the
   /// first. `what` names them in messages.
@@ -98,8 +106,6 @@ struct Simulation::Impl {
   /// of the last step.
   template <class Done, class Capture>
   StepSums advance(const Done& done, const Capture& capture);
-  /// `goes_on`: the call before and this one are one, of which colliders' forces are the mean.
-  StepReport advance_steps(int count, bool goes_on);
   StepReport report(const StepSums& sums) const;
   /// All particles, in the order of their ids, with velocities.
   const ParticleFrame& frame() const;
@@ -118,10 +124,17 @@ struct Simulation::Impl {
   template <class R>
   Relay<R>& relay() const;
 
+  SimulationOptions options;
   mutable SimulationState state;
   std::string identity;
   std::vector<StepObserver> step_observers;
   std::vector<FrameObserver> frame_observers;
+  int under_way = 0;  ///< calls that take steps
+  struct TakesSteps {
+    explicit TakesSteps(Impl& of) : impl(of) { ++impl.under_way; }
+    ~TakesSteps() { --impl.under_way; }
+    Impl& impl;
+  };
 
   /// The particles of a material.
   struct View {
@@ -142,6 +155,12 @@ struct Simulation::Impl {
   std::unique_ptr<ThreadArena> threads_;
   std::variant<std::unique_ptr<Engine<float>>, std::unique_ptr<Engine<double>>> engine_;
   std::variant<std::monostate, std::shared_ptr<Observer<float>>, std::shared_ptr<Observer<double>>> relay_;
+};
+
+/// The way of this module's files, and of tests, to what a Simulation is made of.
+struct SimulationAccess {
+  static Simulation::Impl& impl(Simulation& simulation) { return *simulation.impl_; }
+  static const Simulation::Impl& impl(const Simulation& simulation) { return *simulation.impl_; }
 };
 
 }  // namespace dreampm

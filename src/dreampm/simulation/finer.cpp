@@ -1,4 +1,4 @@
-#include "dreampm/play/finer.h"
+#include "dreampm/simulation/finer.h"
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@
 #include "dreampm/state/particle_state.h"
 #include "dreampm/state/particle_view.h"
 
-namespace dreampm::play {
+namespace dreampm {
 namespace {
 
 /// Spacings: how far from a wall or a collider the nearest particles are.
@@ -141,8 +141,8 @@ class Refinement {
 
 template <class R>
 void write_finer(const std::filesystem::path& file, const World<R>& coarse, const Motion<R>& motion,
-                 const scene::SceneDescription& scene, const ExpectedSpeed& expected) {
-  const InitialState start = assemble(scene, file.string());
+                 const scene::SceneDescription& scene, const std::string& scene_file, const ExpectedSpeed& expected) {
+  const InitialState start = assemble(scene, scene_file);
   World<R> empty = as_world<R>(start.world);
   std::vector<std::string> notes;
   for (std::size_t s = 0; s < empty.sets.size(); ++s)
@@ -158,8 +158,8 @@ void write_finer(const std::filesystem::path& file, const World<R>& coarse, cons
 }
 
 template void write_finer(const std::filesystem::path&, const World<float>&, const Motion<float>&,
-                          const scene::SceneDescription&, const ExpectedSpeed&);
+                          const scene::SceneDescription&, const std::string&, const ExpectedSpeed&);
 template void write_finer(const std::filesystem::path&, const World<double>&, const Motion<double>&,
-                          const scene::SceneDescription&, const ExpectedSpeed&);
+                          const scene::SceneDescription&, const std::string&, const ExpectedSpeed&);
 
-}  // namespace dreampm::play
+}  // namespace dreampm
