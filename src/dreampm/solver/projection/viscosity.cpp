@@ -295,7 +295,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, const CutCel
         sum += static_cast<double>(mass_[a][c] * (was - is) * (was + is) / 2);
     return sum;
   });
-  bodies_.scatter_more(body_velocity_, velocity_);
+  bodies_.scatter_more(body_velocity_, velocity_, grid);
   for (auto& v : velocity_) grid.wrap(v);
   force(grid, velocity_, body_velocity_, true, product_, body_product_);
   each([&](std::size_t a, std::size_t c) {

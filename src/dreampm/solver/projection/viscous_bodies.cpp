@@ -61,8 +61,12 @@ void ViscousBodies<R>::scatter(const std::vector<Six>& bodies, Faces& u) const {
 }
 
 template <class R>
-void ViscousBodies<R>::scatter_more(const std::vector<Six>& bodies, Faces& u) const {
-  for (const Face& face : faces_) u[face.axis][face.place] += static_cast<R>(dot(face.column, bodies[face.body]));
+void ViscousBodies<R>::scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const {
+  for (const Face& face : faces_) {
+    R& at = u[face.axis][face.place];
+    at += static_cast<R>(dot(face.column, bodies[face.body]));
+    if (grid.open[face.axis][face.place] > R(0)) grid.free[face.axis][face.place] = at;
+  }
 }
 
 template <class R>

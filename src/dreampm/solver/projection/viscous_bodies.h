@@ -29,8 +29,8 @@ class ViscousBodies {
   void gather(const Faces& f, const SlippingCells<R>& slipping, std::vector<Six>& bodies) const;
   /// Velocities of faces from those of bodies, and the faces that have them: J^T V.
   void scatter(const std::vector<Six>& bodies, Faces& u) const;
-  /// The same, added to what is there.
-  void scatter_more(const std::vector<Six>& bodies, Faces& u) const;
+  /// The same, added to what is there; and in `free` of open faces what they are then.
+  void scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const;
   /// What flows out of cells as bodies move.
   void add_flow(const std::vector<Six>& bodies, SlippingCells<R>& slipping) const;
   /// M V, M over the mass of a cell of liquid; 0 in locked components.
