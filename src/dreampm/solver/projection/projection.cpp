@@ -154,6 +154,7 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
 template <class R>
 double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   viscosity_iterations_ = 0;
+  viscosity_.leave_out();
   const double nu = viscosity_of(world);
   if (!(nu > 0)) return 0;
   std::array<bool, 6> walls;
@@ -171,7 +172,7 @@ double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   };
   bodies_.find_cells(world, grid_, cut_);
   press(1);
-  const ViscousSolve solved = viscosity_.solve(world, grid_, diffusion, density_of(world));
+  const ViscousSolve solved = viscosity_.solve(world, grid_, cut_, bodies_, diffusion, density_of(world));
   press(-1);
   viscosity_iterations_ = solved.iterations;
   return solved.heat * density_of(world) * world.dx * world.dx * world.dx;
@@ -353,7 +354,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.pass.energy.viscous = press(world, s);
   const ParticleSet<R>* const liquid = liquid_of(world);
   const StepScale scale{liquid ? liquid->mass : 0, s.density * world.dx * world.dx * world.dx, s.gained};
-  add_contact(world, grid_, cut_, scale, sums.grid);
+  add_contact(world, grid_, cut_, viscosity_, scale, sums.grid);
   const FaceSums faces = face_sums(world, grid_, scale);
   const Moved moved = advance(world, s, sums);
   count(world, s, faces, moved, sums);

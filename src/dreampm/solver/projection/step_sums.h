@@ -4,6 +4,7 @@
 #include "dreampm/backend/backend.h"
 #include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/viscosity.h"
 
 namespace dreampm {
 
@@ -17,10 +18,10 @@ struct StepScale {
 /// After velocities are extended: what walls and colliders gave to the liquid. Of walls it is what
 /// their faces stop, and the pressure of the cells beside them; of colliders the pressure over the
 /// parts of faces that they close, as it is at their surface. What a collider hides of a wall is
-/// the collider's.
+/// the collider's. Of both also what viscosity did.
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
-                 GridStats& to);
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Viscosity<R>& viscosity,
+                 const StepScale& scale, GridStats& to);
 
 struct FaceSums {
   EnergySums energy;
