@@ -120,8 +120,9 @@ void Simulation::set_gravity(const Vec3d& gravity) {
   impl_->with_engine([&](auto& engine) {
     engine.world().gravity = gravity;
     engine.world().gravity_keys.clear();
+    // Neither the grid of explicit steps nor the length of the next one depends on it.
+    if (engine.world().settings.solver == SolverKind::projection) impl_->state.edited = true;
   });
-  impl_->state.edited = true;
 }
 
 void Simulation::set_wall(Side side, std::string_view type, double friction) {

@@ -67,13 +67,17 @@ void refuse_unknown(const World<R>& world) {
 template <class R>
 void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  if (blocks == former) return;
   LargeVector<R> carried(blocks.size() * block_nodes, R(0));
-  std::size_t old = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    while (old < former.size() && block_less(former[old], blocks[b])) ++old;
-    if (old < former.size() && former[old] == blocks[b])
-      std::copy_n(world.cell_pressure.data() + old * block_nodes, block_nodes, carried.data() + b * block_nodes);
-  }
+  parallel_ranges(blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
+    auto old = std::lower_bound(former.begin(), former.end(), blocks[begin], block_less);
+    for (std::size_t b = begin; b < end; ++b) {
+      while (old != former.end() && block_less(*old, blocks[b])) ++old;
+      if (old != former.end() && *old == blocks[b])
+        std::copy_n(world.cell_pressure.data() + (old - former.begin()) * block_nodes, block_nodes,
+                    carried.data() + b * block_nodes);
+    }
+  });
   world.cell_pressure.swap(carried);
 }
 
