@@ -2,19 +2,11 @@
 
 #include <algorithm>
 
+#include "dreampm/solver/projection/fill_field.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
-
-template <class Field, class T>
-void fill(Field& field, std::size_t size, T value) {
-  resize_for_overwrite(field, size);
-  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::fill(field.begin() + static_cast<std::ptrdiff_t>(begin), field.begin() + static_cast<std::ptrdiff_t>(end),
-              static_cast<typename Field::value_type>(value));
-  });
-}
 
 /// The cells of a block that hold particles, by their stencils: bit k of [i][j].
 template <class R>
@@ -94,22 +86,22 @@ void MacGrid<R>::lay(const World<R>& world) {
     cells.fill_outside(field.data(), value);
   };
   for (std::size_t a = 0; a < 3; ++a) {
-    fill(sums[a], size, FaceSum<R>{});
+    fill_field(sums[a], size, FaceSum<R>{});
     lay_outside(open[a], R(0));
     for (Field* f : {&free[a], &velocity[a], &moving[a]}) lay_outside(*f, unknown_velocity<R>);
   }
-  for (Field* f : {&density, &impulse, &displacement}) fill(*f, size, 0);
+  for (Field* f : {&density, &impulse, &displacement}) fill_field(*f, size, 0);
   lay_outside(depth, R(-1));
-  fill(scratch, size, -1);
-  fill(held, size, 0);
+  fill_field(scratch, size, -1);
+  fill_field(held, size, 0);
   if (world.colliders.empty())
     room.clear();
   else
-    fill(room, size, 1);
+    fill_field(room, size, 1);
   const bool solids = !std::all_of(world.sets.begin(), world.sets.end(), is_projected<R>);
   const auto lay_beside = [&](auto& field, auto value) {
     if (solids)
-      fill(field, size, value);
+      fill_field(field, size, value);
     else
       field.clear();
   };
@@ -123,18 +115,18 @@ void MacGrid<R>::lay(const World<R>& world) {
     if (world.colliders.empty())
       o.clear();
     else
-      fill(o, size, no_owner);
+      fill_field(o, size, no_owner);
   const bool holds = std::find(holding.colliders.begin(), holding.colliders.end(), true) != holding.colliders.end();
   for (Field& f : gap)
     if (holds)
-      fill(f, size, far);
+      fill_field(f, size, far);
     else
       f.clear();
   const bool moves =
       std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
   for (Field& f : solid)
     if (moves)
-      fill(f, size, 0);
+      fill_field(f, size, 0);
     else
       f.clear();
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/solver/projection/fill_field.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
@@ -43,19 +44,11 @@ double sum_over(const std::vector<Row>& rows, std::vector<double>& parts, const 
   return sum;
 }
 
-template <class R>
-void clear(LargeVector<R>& v, std::size_t size) {
-  resize_for_overwrite(v, size);
-  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::fill(v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end), R(0));
-  });
-}
-
 /// Of some rows with unknowns: what is read of the others is 0.
 template <class R>
 void lay(PressureLevel<R>& level, const CellRows& cells) {
   for (auto* v : {&level.diagonal, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r})
-    clear(*v, cells.size());
+    fill_field(*v, cells.size(), R(0));
   resize_for_overwrite(level.inverse, cells.size());
   level.rows.clear();
 }
@@ -81,7 +74,7 @@ void PressureSolver<R>::begin(const CellRows& cells, int longest) {
   for (int n = longest; n > coarsest_cells; n = (n + 1) / 2) ++depth_;
   if (levels_.size() < depth_) levels_.resize(depth_), coarse_.resize(depth_), parents_.resize(depth_);
   lay(levels_.front(), cells);
-  clear(direction_, cells.size());
+  fill_field(direction_, cells.size(), R(0));
   resize_for_overwrite(product_, cells.size());
 }
 
