@@ -205,6 +205,8 @@ TEST_P(Reads, CountsAreThoseOfTheTotals) {
   EXPECT_GT(counts.removed, 0u);
   EXPECT_GT(counts.left, 0u);
   EXPECT_GT(counts.drained, 0u);
+  EXPECT_EQ(counts.particles + counts.removed + counts.left + counts.drained, simulation->next_id())
+      << "each that ever came is there, or went one way";
   EXPECT_EQ(std::tie(counts.entered, counts.removed, counts.left, counts.drained),
             std::tie(totals.entered, totals.removed, totals.left, totals.drained));
 }
