@@ -1,3 +1,4 @@
+#include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -120,6 +121,7 @@ void add_step(CLI::App& bench, Action& action) {
     StepBenchOptions options;
     std::vector<int> cells;
     std::string solver = "explicit";
+    std::array<bool, 4> taps{};  ///< by Tap
     bool json = false, each = false;
   };
   auto a = std::make_shared<Arguments>();
@@ -139,6 +141,13 @@ void add_step(CLI::App& bench, Action& action) {
       ->check(CLI::IsMember({"explicit", "projection"}));
   verb->add_flag("--droplets", a->options.droplets, "drops of 8 particles, far apart and falling, instead of a column")
       ->excludes("--cells");
+  const std::pair<const char*, const char*> taps[]{
+      {"--emitter", "what bringing matter in costs beside the step: the step without it, with it, and its share"},
+      {"--sink", "the same of taking matter out"},
+      {"--moving", "the same of a mesh of 4,512 faces that turns, beside one that stands"},
+      {"--edit", "the same of changing a value of the material before every step"}};
+  for (std::size_t t = 0; t < a->taps.size(); ++t)
+    verb->add_flag(taps[t].first, a->taps[t], taps[t].second)->excludes("--droplets");
   verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
   verb->add_option("--isa", a->options.isa, "auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_option("--windows", a->options.windows, "measurements, of which the median counts")
@@ -158,6 +167,14 @@ void add_step(CLI::App& bench, Action& action) {
           fmt::print("window {:.4f} {:.4f}\n", ns, cpu_ns);
           std::fflush(stdout);
         };
+      std::vector<Tap> asked;
+      for (const Tap tap : {Tap::emitter, Tap::sink, Tap::moving, Tap::edit})
+        if (a->taps[static_cast<std::size_t>(tap)]) asked.push_back(tap);
+      if (!asked.empty()) {
+        a->options.large_steps = a->solver == "projection";
+        print_rows(bench_taps(a->options, asked), 1, a->json);
+        return 0;
+      }
       if (a->solver == "projection") {
         print_rows(bench_projection(a->options), 1, a->json);
         return 0;

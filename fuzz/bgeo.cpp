@@ -1,5 +1,5 @@
 // .bgeo files.
-#include "dreampm/geometry/bgeo.h"
+#include "dreampm/import/bgeo.h"
 
 #include "model.h"
 

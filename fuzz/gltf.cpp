@@ -1,5 +1,5 @@
 // glTF files, .gltf and .glb; of others that they name none is there.
-#include "dreampm/geometry/gltf.h"
+#include "dreampm/import/gltf.h"
 
 #include "model.h"
 

@@ -1,5 +1,5 @@
 // OBJ files.
-#include "dreampm/geometry/obj.h"
+#include "dreampm/import/obj.h"
 
 #include "model.h"
 

@@ -1,5 +1,5 @@
 // OFF files.
-#include "dreampm/geometry/off.h"
+#include "dreampm/import/off.h"
 
 #include "model.h"
 

@@ -1,5 +1,5 @@
 // PLY files: as meshes and clouds of others, and as the particles and surfaces of a run.
-#include "dreampm/geometry/ply.h"
+#include "dreampm/import/ply.h"
 
 #include "dreampm/io/ply.h"
 #include "model.h"

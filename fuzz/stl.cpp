@@ -1,5 +1,5 @@
 // STL files.
-#include "dreampm/geometry/stl.h"
+#include "dreampm/import/stl.h"
 
 #include "model.h"
 

@@ -1,7 +1,7 @@
 // VTK files: legacy ones by their first words, others as XML, in which packed data grow by a
 // thousand and become doubles.
-#include "dreampm/geometry/vtk_legacy.h"
-#include "dreampm/geometry/vtk_xml.h"
+#include "dreampm/import/vtk_legacy.h"
+#include "dreampm/import/vtk_xml.h"
 #include "model.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

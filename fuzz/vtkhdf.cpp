@@ -1,7 +1,7 @@
 // .vtkhdf files. An input is no file but a list of changes to the arrays of a right one, which HDF5
 // writes: so it is our reader that meets wrong counts, types and sizes. In half of them bytes of
 // that file are changed too.
-#include "dreampm/geometry/vtkhdf.h"
+#include "dreampm/import/vtkhdf.h"
 
 #include <fuzzer/FuzzedDataProvider.h>
 

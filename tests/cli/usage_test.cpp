@@ -109,6 +109,37 @@ TEST_F(Usage, BenchAllIsATableOfEveryCase) {
   EXPECT_EQ(type("bench step --droplets --cells 4 4 4").code, 2);
 }
 
+TEST_F(Usage, BenchMeasuresWhatTapsCostBesideTheStep) {
+  const std::string small = "bench step --cells 12 8 12 --threads 2 --windows 1 --seconds 0.001";
+  for (const char* solver : {"", " --solver projection"}) {
+    Typed t = type(small + solver + " --emitter --sink --moving --edit --json");
+    ASSERT_EQ(t.code, 0) << t.err;
+    const json rows = json::parse(t.out).at("results");
+    ASSERT_EQ(rows.size(), 12u);
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const std::string name = rows[r].at("case");
+      EXPECT_THAT(name, testing::StartsWith(*solver ? "projection" : "steps"));
+      EXPECT_EQ(rows[r].at("threads"), 2);
+      EXPECT_EQ(rows[r].at("unit"), r % 3 < 2 ? "M/s" : "%") << name;
+      if (r % 3 < 2) {
+        EXPECT_GT(rows[r].at("value").get<double>(), 0) << name;
+      }
+      EXPECT_EQ(name.find("cost of") != std::string::npos, r % 3 == 2) << name;
+    }
+    // What they do is seen in the particles.
+    const auto particles = [&](std::size_t row) { return rows[row].at("particles").get<int>(); };
+    EXPECT_GT(particles(1), particles(0)) << "an emitter";
+    EXPECT_LT(particles(4), particles(3)) << "a sink";
+    EXPECT_LT(particles(6), particles(0)) << "a mesh takes room";
+    EXPECT_EQ(particles(7), particles(6));
+    EXPECT_EQ(particles(10), particles(9)) << "an edit";
+  }
+  const Typed t = type(small + " --material snow --sink");
+  EXPECT_THAT(t.out, testing::HasSubstr("| steps: cost of a sink | "));
+  EXPECT_EQ(type("bench step --sink --droplets").code, 2);
+  EXPECT_EQ(type("bench step --sink --solver projection --material snow").code, 2);
+}
+
 TEST_F(Usage, BenchMeasuresTheProjectionInCalmWaterAndInASplash) {
   const std::string small = "bench step --solver projection --cells 8 8 4 --windows 1 --seconds 0.001";
   Typed t = type(small + " --threads 2 --json");

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/asset.h"
+#include "dreampm/import/asset.h"
 #include "dreampm/pipeline/points.h"
 
 namespace dreampm {

@@ -9,7 +9,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/import.h"
+#include "dreampm/import/import.h"
 #include "dreampm/scene/files.h"
 #include "dreampm/scene/parse.h"
 

@@ -11,7 +11,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/solver/motion_by_id.h"
 
 namespace dreampm {

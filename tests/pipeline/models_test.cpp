@@ -11,13 +11,13 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/level_set.h"
-#include "dreampm/geometry/point_cloud.h"
+#include "dreampm/import/point_cloud.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/level_set/level_set.h"
 #include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/points.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 
 namespace dreampm {
 namespace {

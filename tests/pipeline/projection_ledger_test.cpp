@@ -6,9 +6,9 @@
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/strict.h"
+#include "dreampm/run/engine.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
+#include "dreampm/setup/assemble.h"
 
 namespace dreampm::projection_ledger_test {
 namespace {

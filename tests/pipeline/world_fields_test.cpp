@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "dreampm/pipeline/checkpoint.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "thrown.h"
 
 namespace dreampm {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 
 namespace dreampm {
 namespace {

@@ -9,7 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "scenes.h"
 
 namespace dreampm {

@@ -3,8 +3,8 @@
 
 #include <numbers>
 
+#include "dreampm/pictures/render_scene.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/render_scene.h"
 
 namespace dreampm {
 namespace {

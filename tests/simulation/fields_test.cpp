@@ -11,7 +11,7 @@
 #include "dreampm/io/ledger.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 
 namespace dreampm {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/pipeline/checkpoint.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
+#include "dreampm/run/engine.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/state/world_fields.h"
 #include "scenes.h"
 

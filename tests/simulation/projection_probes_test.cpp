@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/pictures/frames.h"
+#include "dreampm/run/engine.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/engine.h"
-#include "dreampm/simulation/frames.h"
 #include "scenes.h"
 
 namespace dreampm::projection_probes_test {

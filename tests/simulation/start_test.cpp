@@ -1,5 +1,5 @@
 // Scenes that start from a moment of another simulation.
-#include "dreampm/simulation/start.h"
+#include "dreampm/setup/start.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -6,8 +6,8 @@
 
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/math/rng.h"
-#include "dreampm/state/obstacles.h"
 #include "mixed_world.h"
 
 namespace dreampm::backend_test {

@@ -1,6 +1,7 @@
 // What a projection is made of: rows of cells, the surface, transfers, the pressure equation.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
 #include <set>
@@ -19,7 +20,7 @@ TEST(CellRows, ARowAndItsNeighborsAreWhereTheirCellsAre) {
   // Two columns, one with a gap along z, and blocks whose other half of a tile is missing.
   std::vector<Vec3i> blocks{{-1, 0, -3}, {-1, 0, 0}, {-1, 0, 1}, {-1, 0, 2},
                             {-1, 0, 6},  {0, 0, 1},  {0, 1, 1},  {4, 4, 4}};
-  rows.lay(blocks);
+  rows.begin(blocks), rows.mark_all(), rows.finish();
   std::set<std::size_t> taken;
   for (const CellRows::Row& row : rows.rows()) {
     for (int k = 0; k < row_cells; ++k) {
@@ -45,6 +46,63 @@ TEST(CellRows, ARowAndItsNeighborsAreWhereTheirCellsAre) {
       }
     }
   EXPECT_EQ(taken.size(), 7 * tile_rows * row_cells);  // (-1, 0, 0) and (-1, 0, 1) share a tile
+}
+
+/// Cells in the order of their coordinates.
+struct CellLess {
+  bool operator()(const Vec3i& a, const Vec3i& b) const { return block_less(a, b); }
+};
+using Cells = std::set<Vec3i, CellLess>;
+
+TEST(CellRows, RowsAreThereWhereTheirCellsAreWanted) {
+  // Blocks 0 to 5 along each axis; along z the ends meet.
+  const int wide = 24;
+  std::vector<Vec3i> blocks;
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      for (int k = 0; k < 6; ++k) blocks.push_back({i, j, k});
+  CellRows rows;
+  rows.begin(blocks, {0, 0, wide / row_cells});
+  Cells wanted;
+  const auto want = [&](Vec3i cell) {
+    cell.z = (cell.z + wide) % wide;
+    if (std::min(cell.x, cell.y) >= 0 && std::max(cell.x, cell.y) < wide) wanted.insert(cell);
+  };
+  for (const Vec3i& first : {Vec3i{3, 4, 6}, {3, 4, 0}, {0, 9, 23}, {23, 23, 12}, {12, 7, 3}}) {
+    rows.mark(first, 0b101);
+    for (const int k : {0, 2}) want(first + Vec3i{0, 0, k});
+  }
+  const auto spread = [&](bool around) {
+    for (const Vec3i& cell : Cells(wanted))
+      for (int a = 0; a < 3; ++a) {
+        Vec3i step{};
+        step[a] = 1;
+        want(cell + step);
+        if (around) want(cell - step);
+      }
+  };
+  rows.spread(CellRows::Spread::high), spread(false);
+  rows.spread(CellRows::Spread::around), spread(true);
+  // Cells behind planes, in the same tile and in the next.
+  for (const auto& [axis, from, to] : {std::array{0, 4, 3}, {1, 5, 6}, {2, 7, 8}}) {
+    rows.mark_beside(axis, from, to);
+    for (Vec3i cell : Cells(wanted))
+      if (cell[axis] == from) cell[axis] = to, want(cell);
+  }
+  rows.finish();
+
+  Cells row_starts;
+  for (const Vec3i& cell : wanted) row_starts.insert({cell.x, cell.y, cell.z / row_cells * row_cells});
+  EXPECT_EQ(rows.rows().size(), row_starts.size());
+  EXPECT_LT(row_starts.size(), std::size_t{wide} * wide / 2);
+  for (const CellRows::Row& row : rows.rows()) EXPECT_TRUE(row_starts.contains(row.first));
+  // One level up, where any of eight cells is.
+  CellRows coarse;
+  coarse.lay_coarser(rows, rows.rows());
+  Cells coarse_starts;
+  for (const Vec3i& at : row_starts) coarse_starts.insert({at.x / 2, at.y / 2, at.z / 2 / row_cells * row_cells});
+  EXPECT_EQ(coarse.rows().size(), coarse_starts.size());
+  for (const CellRows::Row& row : coarse.rows()) EXPECT_TRUE(coarse_starts.contains(row.first));
 }
 
 // The surface.
@@ -121,7 +179,7 @@ struct Blob {
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 2; ++j)
         for (int k = 0; k < 3; ++k) blocks.push_back({i, j, k});
-    cells.lay(blocks);
+    cells.begin(blocks), cells.mark_all(), cells.finish();
     solver.begin(cells, 12);
     PressureLevel<double>& m = solver.matrix();
     std::mt19937 dice(3);
@@ -196,7 +254,7 @@ TEST(PressureSolver, TheMultigridTakesFewIterationsInADeepTank) {
   std::vector<Vec3i> blocks;
   for (int n = 0; n < 16 * 16 * 16; ++n) blocks.push_back({n / 256, n / 16 % 16, n % 16});
   CellRows cells;
-  cells.lay(blocks);
+  cells.begin(blocks), cells.mark_all(), cells.finish();
   PressureSolver<float> solver;
   solver.begin(cells, 64);
   PressureLevel<float>& m = solver.matrix();

@@ -245,7 +245,7 @@ TEST(Viscosity, WhatTurnsAsAWholeStaysAsItIsAndWhatShearsLosesWhatItMakesOfHeat)
     find_depths(grid, 0);
     const auto before = grid.free;
     Viscosity<double> viscosity;
-    const ViscousSolve solved = viscosity.solve(run.world, grid, 10, 1000);
+    const ViscousSolve solved = viscosity.solve(run.world, grid, {}, {}, 10, 1000);
     double most = 0, kinetic = 0;
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t f = 0; f < before[a].size(); ++f) {

@@ -142,6 +142,7 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
                                      [](const Node<R>& n) { return n.x == 0 && n.y == 0 && n.z == 0 && n.m == 0; });
       if (fresh) add_colliders(world, obstacles, b, m);
     }
+  const NodesToAddTo<R> to = nodes_to_add_to(world, set);
   for (const ParticleSeed& n : seeds) {
     const auto home = world.locate(n.position);
     const Vec3i first = first_stencil(home.block);
@@ -156,7 +157,7 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
     for (int a = 0; a < 3; ++a)
       terms.affine[a] = static_cast<Vec3<R>>(n.gradient.column(a) * world.dx) * step.mass * step.transfer.affine;
     terms.viscosity = rest.kinematic_viscosity;
-    add_particle(world, set, step, stencil, terms, index_of);
+    add_particle(world, set, step, stencil, terms, to, index_of);
   }
   return stats;
 }

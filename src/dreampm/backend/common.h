@@ -8,9 +8,9 @@
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/mirror_walls.h"
 #include "dreampm/backend/node_loops.h"
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/neighbors.h"
-#include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 

@@ -11,9 +11,9 @@
 
 #include "dreampm/backend/near_nodes.h"
 #include "dreampm/base/thread_team.h"
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/neighbors.h"
-#include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 

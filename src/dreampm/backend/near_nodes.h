@@ -4,9 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/physics/transfer.h"
 #include "dreampm/state/neighbors.h"
-#include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 

@@ -11,9 +11,9 @@
 #include "dreampm/backend/body_coupling.h"
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/base/thread_team.h"
+#include "dreampm/contact/obstacles.h"
 #include "dreampm/math/bspline.h"
 #include "dreampm/state/neighbors.h"
-#include "dreampm/state/obstacles.h"
 
 namespace dreampm {
 

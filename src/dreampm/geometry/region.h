@@ -35,7 +35,7 @@ class Region {
   virtual Box3d bounds() const = 0;
 };
 
-/// Turns mesh shapes into regions; given by geometry/level_set.h, so that the analytic shapes need
+/// Turns mesh shapes into regions; given by level_set/level_set.h, so that the analytic shapes need
 /// no OpenVDB. `reach` [m]: as far as distances are wanted, where that is more than the maker
 /// gives.
 using MeshRegions = std::function<std::shared_ptr<const Region>(const MeshShape&, double voxel, double reach)>;

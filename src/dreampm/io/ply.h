@@ -1,6 +1,6 @@
 // PLY files that dreampm writes and reads back: particle frames and surface meshes. Foreign meshes
 // and clouds are read by geometry/; headers and values by one reader for all
-// (geometry/ply_header.h, geometry/ply_values.h).
+// (import/ply_header.h, import/ply_values.h).
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
-#include "dreampm/geometry/ply_header.h"
+#include "dreampm/import/ply_header.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {

@@ -4,9 +4,9 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/gzip.h"
-#include "dreampm/geometry/ply_values.h"
 #include "dreampm/geometry/whole.h"
+#include "dreampm/import/gzip.h"
+#include "dreampm/import/ply_values.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/ply.h"
 

@@ -3,7 +3,7 @@
 #include <string_view>
 
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/point_file.h"
+#include "dreampm/import/point_file.h"
 #include "dreampm/io/ply.h"
 
 namespace dreampm {

@@ -1,6 +1,6 @@
-// The numbers of contact with colliders: points of surfaces (state/surface_points.h), impulses at
+// The numbers of contact with colliders: points of surfaces (contact/surface_points.h), impulses at
 // them (backend/surface_contact.h), gaps (backend/contact_gap.h), exact distances
-// (state/obstacles.h), and particles that are put back (physics/particle.h:put_back). Where no
+// (contact/obstacles.h), and particles that are put back (physics/particle.h:put_back). Where no
 // reason is given here or in docs/theory/contact.md ("Colliders"), the value is a choice
 // that no ablation backs yet.
 #pragma once

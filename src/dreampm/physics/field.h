@@ -9,7 +9,7 @@
 //                    must not fall with dt
 //   head(passage)    the most energy that it can give on the way [m^2/s^2 = J/kg], at least 0: what gravity gives is
 //                    g h. Held back, matter presses with density * head; let go, it comes to sqrt(2 head). A liquid's
-//                    sound has to be fast beside that (simulation/assemble.cpp)
+//                    sound has to be fast beside that (setup/assemble.cpp)
 //   bounds()         optional: a box [m] outside of which it does nothing
 #pragma once
 #include <array>

@@ -31,11 +31,6 @@ double best_rate(int tries, const Work& work) {
   return best;
 }
 
-void check_particles(const StepBenchOptions& options) {
-  if (options.particles < 64 || options.particles > 200000000)
-    fail_input("--particles {}: give 64 to 200000000", options.particles);
-}
-
 }  // namespace
 
 Ceilings measure_ceilings(const std::string& isa, int threads) {
@@ -66,7 +61,7 @@ Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings) {
 std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
   if (options.material != "newtonian" || options.droplets)
     fail_input("--solver projection: moves water at rest and in a splash; leave --material and --droplets out");
-  check_particles(options);
+  check_particles(options.particles);
   const std::string isa(make_cpu_backend(options.isa)->isa());
   std::vector<BenchRow> rows;
   for (const auto& [waters, name] : {std::pair{Waters::calm, "calm water"}, std::pair{Waters::splash, "a splash"}}) {
@@ -92,13 +87,8 @@ std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
 }
 
 StepBenchResult bench_step(const StepBenchOptions& options) {
-  const MaterialInfo* material = find_material(options.material);
-  if (!material) {
-    std::string names;
-    for (const MaterialInfo& m : material_infos()) names += (names.empty() ? "" : ", ") + std::string(m.name);
-    fail_input("--material {}: there is no such material; there are {}", options.material, names);
-  }
-  check_particles(options);
+  const MaterialInfo& material = bench_material(options.material);
+  check_particles(options.particles);
   const ThreadLimit threads(options.threads);
   StepBenchResult r;
   r.isa = std::string(make_cpu_backend(options.isa)->isa());
@@ -107,7 +97,7 @@ StepBenchResult bench_step(const StepBenchOptions& options) {
   r.droplets = options.droplets;
   r.threads = options.threads;
   const Course course(
-      options.droplets ? droplets_scene(*material, options.particles / 8) : column_scene(*material, r.cells), r.isa);
+      options.droplets ? droplets_scene(material, options.particles / 8) : column_scene(material, r.cells), r.isa);
   r.particles = course.world().particles();
   r.memory_per_particle = course.memory_per_particle();
   r.peak_memory_bytes = peak_memory_bytes();

@@ -16,6 +16,7 @@ struct StepBenchOptions {
   std::uint64_t particles = 1 << 20;  ///< rounded to a column of whole cells of 8, of the shape 2:2:1
   std::optional<Vec3i> cells;         ///< the column's cells, instead of `particles`
   bool droplets = false;              ///< `particles` in drops of 8 that are far apart, instead of a column
+  bool large_steps = false;           ///< of the projection, for bench_taps
   int threads = 1;
   std::string isa = "auto";
   int windows = 5;              ///< the result is the median of this number of windows
@@ -83,6 +84,19 @@ struct BenchRow {
 /// and where there are more also with all of them. Takes particles or cells, threads and windows of
 /// the options. Throws InputError for one that it does not have.
 std::vector<BenchRow> bench_projection(const StepBenchOptions& options);
+
+/// What may come beside the steps.
+enum class Tap {
+  emitter,  ///< brings matter in from above
+  sink,     ///< takes what comes to the middle of the floor
+  moving,   ///< a mesh of some thousand faces turns in the matter, where it stood before
+  edit      ///< a value of the material changes before every step
+};
+
+/// Of each tap three rows: the step without it, the step with it, and what it costs in shares of
+/// the step [%]. Both take turns. Takes all of the options but droplets. Throws InputError for one
+/// that it does not have.
+std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vector<Tap>& taps);
 
 struct TableOptions {
   std::string isa;  ///< only this one; empty: all that the machine has

@@ -1,7 +1,7 @@
 #include "dreampm/pipeline/checkpoint.h"
 
 #include "dreampm/io/archive.h"
-#include "dreampm/simulation/world_archive.h"
+#include "dreampm/setup/world_archive.h"
 
 namespace dreampm {
 namespace {

@@ -5,10 +5,10 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/pictures/frames.h"
+#include "dreampm/pictures/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
-#include "dreampm/simulation/frames.h"
-#include "dreampm/simulation/render_scene.h"
-#include "dreampm/simulation/start.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {

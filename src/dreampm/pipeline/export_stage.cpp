@@ -7,9 +7,9 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
+#include "dreampm/pictures/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/render/camera_place.h"
-#include "dreampm/simulation/render_scene.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

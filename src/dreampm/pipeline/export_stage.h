@@ -1,7 +1,7 @@
 // A run as files of other programs (exchange/): particles, meshes, colliders and camera, frame by
 // frame.
 #pragma once
-#include "dreampm/exchange/clip.h"
+#include "dreampm/export/clip.h"
 #include "dreampm/pipeline/run_folder.h"
 
 namespace dreampm {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/level_set.h"
-#include "dreampm/simulation/colliders.h"
+#include "dreampm/level_set/level_set.h"
+#include "dreampm/setup/colliders.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

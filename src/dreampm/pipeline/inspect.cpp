@@ -4,10 +4,10 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
-#include "dreampm/geometry/asset.h"
-#include "dreampm/geometry/import.h"
 #include "dreampm/geometry/openness.h"
-#include "dreampm/geometry/point_cloud.h"
+#include "dreampm/import/asset.h"
+#include "dreampm/import/import.h"
+#include "dreampm/import/point_cloud.h"
 #include "dreampm/io/archive.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/checkpoint.h"
@@ -15,8 +15,8 @@
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/start.h"
+#include "dreampm/setup/assemble.h"
+#include "dreampm/setup/start.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/exchange/axes.h"
+#include "dreampm/export/axes.h"
 
 namespace dreampm {
 
 struct LooseSurfaces {
-  std::vector<std::string> files;  ///< clouds of points (geometry/point_file.h), a file a frame
+  std::vector<std::string> files;  ///< clouds of points (import/point_file.h), a file a frame
   std::optional<double> spacing;   ///< between particles, in the unit of the files
   std::filesystem::path out = "surface";
   double voxel = 0.5;  ///< in spacings

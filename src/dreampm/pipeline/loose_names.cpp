@@ -3,7 +3,7 @@
 #include <map>
 
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/gzip.h"
+#include "dreampm/import/gzip.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

@@ -5,12 +5,12 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
-#include "dreampm/geometry/point_cloud.h"
-#include "dreampm/geometry/point_file.h"
+#include "dreampm/import/point_cloud.h"
+#include "dreampm/import/point_file.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
-#include "dreampm/simulation/frames.h"
 #include "dreampm/surface/surface.h"
 
 namespace dreampm {

@@ -6,7 +6,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
-#include "dreampm/geometry/asset.h"
+#include "dreampm/import/asset.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/files.h"
 

@@ -7,12 +7,12 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/geometry/asset.h"
-#include "dreampm/geometry/import.h"
-#include "dreampm/geometry/level_set.h"
-#include "dreampm/geometry/point_cloud.h"
+#include "dreampm/import/asset.h"
+#include "dreampm/import/import.h"
+#include "dreampm/import/point_cloud.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/simulation/body_checks.h"
+#include "dreampm/level_set/level_set.h"
+#include "dreampm/setup/body_checks.h"
 #include "dreampm/surface/cells.h"
 
 namespace dreampm {

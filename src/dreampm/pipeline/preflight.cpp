@@ -16,12 +16,12 @@
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
-#include "dreampm/simulation/fixed_dt.h"
-#include "dreampm/simulation/inflow.h"
+#include "dreampm/run/engine.h"
+#include "dreampm/setup/assemble.h"
+#include "dreampm/setup/fixed_dt.h"
+#include "dreampm/setup/inflow.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/simulation/probe_set.h"
-#include "dreampm/simulation/start.h"
 #include "dreampm/solver/projection/solids.h"
 
 namespace dreampm {

@@ -8,9 +8,9 @@
 #include "dreampm/base/log.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/pictures/draw.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/simulation/draw.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

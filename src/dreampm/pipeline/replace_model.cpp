@@ -4,8 +4,8 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
-#include "dreampm/geometry/import.h"
 #include "dreampm/geometry/region.h"
+#include "dreampm/import/import.h"
 
 namespace dreampm {
 namespace {

@@ -20,6 +20,7 @@
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
@@ -28,13 +29,12 @@
 #include "dreampm/pipeline/probes.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/strict.h"
+#include "dreampm/run/engine.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/problem.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
-#include "dreampm/simulation/fixed_dt.h"
-#include "dreampm/simulation/frames.h"
-#include "dreampm/simulation/start.h"
+#include "dreampm/setup/assemble.h"
+#include "dreampm/setup/fixed_dt.h"
+#include "dreampm/setup/start.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;

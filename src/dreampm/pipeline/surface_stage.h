@@ -1,8 +1,8 @@
 // The surface stage: particles of every material that is not drawn as spheres become a mesh, frame
 // by frame.
 #pragma once
+#include "dreampm/pictures/draw.h"
 #include "dreampm/pipeline/stage.h"
-#include "dreampm/simulation/draw.h"
 
 namespace dreampm {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "dreampm/error.h"
-#include "dreampm/geometry/asset.h"
-#include "dreampm/geometry/import.h"
+#include "dreampm/import/asset.h"
+#include "dreampm/import/import.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/pointer.h"
 #include "dreampm/queries.h"

@@ -4,9 +4,9 @@
 #include <new>
 #include <numbers>
 
+#include "dreampm/contact/body_surface.h"
 #include "dreampm/rigid/bullet_forms.h"
 #include "dreampm/rigid/bullet_vectors.h"
-#include "dreampm/state/body_surface.h"
 
 namespace dreampm {
 namespace {

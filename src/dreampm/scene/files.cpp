@@ -8,7 +8,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/uri.h"
-#include "dreampm/geometry/gzip.h"
+#include "dreampm/import/gzip.h"
 
 namespace dreampm::scene {
 namespace fs = std::filesystem;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dreampm/geometry/asset_names.h"
+#include "dreampm/import/asset_names.h"
 #include "dreampm/scene/description.h"
 #include "dreampm/scene/problem.h"
 

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/level_set.h"
+#include "dreampm/level_set/level_set.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/setup/colliders.h"
+#include "dreampm/setup/rigid.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/colliders.h"
-#include "dreampm/simulation/rigid.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/state/particle_view.h"
 

@@ -6,12 +6,12 @@
 
 #include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/level_set.h"
+#include "dreampm/level_set/level_set.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/setup/body_checks.h"
+#include "dreampm/setup/colliders.h"
+#include "dreampm/setup/projection_checks.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/body_checks.h"
-#include "dreampm/simulation/colliders.h"
-#include "dreampm/simulation/projection_checks.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -120,8 +120,9 @@ void Simulation::set_gravity(const Vec3d& gravity) {
   impl_->with_engine([&](auto& engine) {
     engine.world().gravity = gravity;
     engine.world().gravity_keys.clear();
+    // Neither the grid of explicit steps nor the length of the next one depends on it.
+    if (engine.world().settings.solver == SolverKind::projection) impl_->state.edited = true;
   });
-  impl_->state.edited = true;
 }
 
 void Simulation::set_wall(Side side, std::string_view type, double friction) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dreampm/backend/registry.h"
-#include "dreampm/simulation/start.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_state.h"
 #include "dreampm/state/particle_view.h"

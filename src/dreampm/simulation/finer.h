@@ -4,12 +4,12 @@
 
 #include "dreampm/backend/motion.h"
 #include "dreampm/scene/description.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
 
-/// Writes a moment of `scene` (simulation/start.h) that has eight particles for each one of
+/// Writes a moment of `scene` (setup/start.h) that has eight particles for each one of
 /// `coarse`, which is of the same scene at twice the spacing. They lie in the middles of the
 /// eighths of the cube that it takes, deformed as it is, at its state, its velocity and the
 /// velocity's change over the cube: mass and momentum stay. What would lie behind a wall or in a

@@ -1,8 +1,8 @@
 #include "dreampm/base/error.h"
+#include "dreampm/pictures/draw.h"
 #include "dreampm/render.h"
 #include "dreampm/render/render.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/draw.h"
 #include "dreampm/simulation/simulation_impl.h"
 
 namespace dreampm {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "dreampm/base/error.h"
-#include "dreampm/geometry/level_set.h"
+#include "dreampm/level_set/level_set.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/problem.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/solver/probe/probe.h"
 
 namespace dreampm {

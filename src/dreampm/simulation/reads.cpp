@@ -12,11 +12,11 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/order.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/scene/problem.h"
 #include "dreampm/scene/sections.h"
+#include "dreampm/setup/collider_mesh.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/collider_mesh.h"
-#include "dreampm/simulation/frames.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/state/particle_view.h"
 

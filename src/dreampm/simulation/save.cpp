@@ -6,13 +6,13 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/geometry/asset.h"
+#include "dreampm/import/asset.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/files.h"
 #include "dreampm/scene/sections.h"
+#include "dreampm/setup/start.h"
 #include "dreampm/simulation/finer.h"
 #include "dreampm/simulation/simulation_impl.h"
-#include "dreampm/simulation/start.h"
 
 namespace dreampm {
 

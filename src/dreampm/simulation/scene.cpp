@@ -3,7 +3,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/projection_checks.h"
+#include "dreampm/setup/projection_checks.h"
 
 namespace dreampm {
 

@@ -12,9 +12,9 @@
 #include "dreampm/base/host.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/run/engine.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
 #include "dreampm/simulation/probe_set.h"
 
 namespace dreampm {

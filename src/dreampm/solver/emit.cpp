@@ -120,10 +120,10 @@ Places matter_in(const World<R>& world, const Box3d& box, double reach) {
   Places all(reach);
   const std::vector<Vec3d> shifts = shifts_into(world, box);
   for (std::size_t s = 0; s < world.sets.size(); ++s)
-    ParticleSetView<R>(world, s).for_each([&](std::size_t, const Vec3d& x) {
-      for (const Vec3d& shift : shifts)
+    for (const Vec3d& shift : shifts)
+      ParticleSetView<R>(world, s).for_each_near({box.min - shift, box.max - shift}, [&](std::size_t, const Vec3d& x) {
         if (box.contains(x + shift)) all.add(x + shift);
-    });
+      });
   return all;
 }
 

@@ -2,12 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/solver/motion_by_id.h"
 
 namespace dreampm {
+namespace {
+
+/// Of all particles.
+struct Pace {
+  double fastest = 0;  ///< m/s: no node is faster than a particle together with its affine motion over a cell
+  double kept = 0;     ///< J, kinetic, of sets that keep velocities
+};
+template <class R>
+Pace pace_of(const World<R>& world, const Motion<R>& motion) {
+  Pace all;
+  const auto join = [](Pace& to, const Pace& from) {
+    to.fastest = std::max(to.fastest, from.fastest), to.kept += from.kept;
+  };
+  for (std::size_t s = 0; s < world.sets.size(); ++s) {
+    const ParticleSet<R>& set = world.sets[s];
+    const auto& m = motion.sets[s];
+    const bool keeps = set.transfer.keeps_velocity();
+    join(all, parallel_reduce(
+                  set.size(), Pace{},
+                  [&](Pace& sum, std::size_t p) {
+                    const auto v = static_cast<Vec3d>(m.velocity[p]);
+                    const auto c = static_cast<Mat3d>(m.gradient[p]);
+                    sum.fastest = std::max(sum.fastest, length(v) + std::sqrt(norm2(c)) * world.dx);
+                    if (keeps) sum.kept += kinetic_energy(set, world.dx, v, c);
+                  },
+                  join));
+  }
+  return all;
+}
+
+}  // namespace
 
 template <class R>
 void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
@@ -18,28 +51,18 @@ void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
-  double fastest = 0;
-  world.keeping = 0;
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const ParticleSet<R>& set = world.sets[s];
-    const auto& m = motion.sets[s];
-    for (std::size_t p = 0; p < set.size(); ++p) {
-      const auto v = static_cast<Vec3d>(m.velocity[p]);
-      const auto c = static_cast<Mat3d>(m.gradient[p]);
-      // No node is faster than a particle together with its affine motion over a cell.
-      fastest = std::max(fastest, length(v) + std::sqrt(norm2(c)) * world.dx);
-      if (set.transfer.keeps_velocity()) world.keeping += kinetic_energy(set, world.dx, v, c);
-    }
-  }
-  choose_dt(world, fastest, frame_end(world) - world.time);
-  if (const double longest = longest_stable_dt(world, fastest); world.settings.fixed_dt > 0 && world.dt_next > longest)
+  const Pace pace = pace_of(world, motion);
+  world.keeping = pace.kept;
+  choose_dt(world, pace.fastest, frame_end(world) - world.time);
+  if (const double longest = longest_stable_dt(world, pace.fastest);
+      world.settings.fixed_dt > 0 && world.dt_next > longest)
     fail_input(
         "time.dt is {:.4g}: after the edit at t = {:.6g} s it must be at most {:.3g} s, for sound and matter may cross "
         "{} of a cell in a step; or give time.cfl instead",
         world.settings.fixed_dt, world.time, longest, largest_cfl);
 
   world.aim_colliders();
-  const MotionById<R> by_id(world, motion);
+  const MotionById<R> by_id(world, std::move(motion));
   backend.sort(world);
   backend.download(world, motion, MatterFields::id);
   motion = by_id.ordered(world);

@@ -1,9 +1,12 @@
 // The motion of particles kept while their order changes.
 #pragma once
+#include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dreampm/backend/motion.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/state/particle_view.h"
 #include "dreampm/state/regroup.h"
 
@@ -26,37 +29,55 @@ class MotionById {
   /// Of no particle yet, in `sets` sets.
   explicit MotionById(std::size_t sets) : place_(sets) { motion_.sets.resize(sets); }
   /// `motion`: in the order of the world's particles.
-  MotionById(const World<R>& world, const Motion<R>& motion) : motion_(motion), place_(world.sets.size()) {
+  MotionById(const World<R>& world, Motion<R> motion) : motion_(std::move(motion)), place_(world.sets.size()) {
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      const ParticleSetView<R> particles(world, s);
-      for (std::size_t p = 0; p < particles.size(); ++p) remember(s, particles.id(p), p);
+      const std::span<const std::uint32_t> ids = ParticleSetView<R>(world, s).ids();
+      if (ids.empty()) continue;
+      const std::uint32_t last = parallel_reduce(
+          ids.size(), std::uint32_t{0}, [&](std::uint32_t& most, std::size_t p) { most = std::max(most, ids[p]); },
+          [](std::uint32_t& most, std::uint32_t other) { most = std::max(most, other); });
+      place_[s].resize(last + std::size_t{1});
+      parallel_for(ids.size(), at_once, [&](std::size_t p) { place_[s][ids[p]] = static_cast<std::uint32_t>(p); });
     }
   }
   /// Of matter that comes into set `s` at rest state.
   void add(std::size_t s, std::span<const ParticleSeed> seeds) {
-    for (const ParticleSeed& seed : seeds) {
-      auto& m = motion_.sets[s];
-      remember(s, seed.id, m.velocity.size());
-      m.velocity.push_back(static_cast<Vec3<R>>(seed.velocity));
-      m.gradient.push_back(static_cast<Mat3<R>>(seed.gradient));
-      m.energy.push_back(R(0));
-      m.volume_ratio.push_back(R(1));
-    }
+    auto& m = motion_.sets[s];
+    const std::size_t first = m.velocity.size();
+    resize(m, first + seeds.size());
+    std::size_t last = 0;
+    for (const ParticleSeed& seed : seeds) last = std::max<std::size_t>(last, seed.id);
+    if (!seeds.empty() && last >= place_[s].size()) place_[s].resize(last + 1);
+    parallel_for(seeds.size(), at_once, [&](std::size_t i) {
+      place_[s][seeds[i].id] = static_cast<std::uint32_t>(first + i);
+      m.velocity[first + i] = static_cast<Vec3<R>>(seeds[i].velocity);
+      m.gradient[first + i] = static_cast<Mat3<R>>(seeds[i].gradient);
+      m.energy[first + i] = R(0);
+      m.volume_ratio[first + i] = R(1);
+    });
   }
   /// In the order of the particles now, each of which must have been there.
   Motion<R> ordered(const World<R>& world) const {
     Motion<R> out;
     out.sets.resize(world.sets.size());
-    for (std::size_t s = 0; s < world.sets.size(); ++s)
-      for (const std::uint32_t id : ParticleSetView<R>(world, s).ids())
-        append(out.sets[s], motion_.sets[s], place_[s].at(id));
+    for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      const std::span<const std::uint32_t> ids = ParticleSetView<R>(world, s).ids();
+      auto& to = out.sets[s];
+      const auto& from = motion_.sets[s];
+      resize(to, ids.size());
+      parallel_for(ids.size(), at_once, [&](std::size_t i) {
+        const std::uint32_t p = place_[s].at(ids[i]);
+        to.velocity[i] = from.velocity[p], to.gradient[i] = from.gradient[p];
+        to.energy[i] = from.energy[p], to.volume_ratio[i] = from.volume_ratio[p];
+      });
+    }
     return out;
   }
 
  private:
-  void remember(std::size_t s, std::uint32_t id, std::size_t p) {
-    if (id >= place_[s].size()) place_[s].resize(id + std::size_t{1});
-    place_[s][id] = static_cast<std::uint32_t>(p);
+  static constexpr std::size_t at_once = 1 << 12;
+  static void resize(typename Motion<R>::Set& m, std::size_t size) {
+    m.velocity.resize(size), m.gradient.resize(size), m.energy.resize(size), m.volume_ratio.resize(size);
   }
   Motion<R> motion_;
   std::vector<std::vector<std::uint32_t>> place_;  ///< by set and id

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "dreampm/state/collider_view.h"
+#include "dreampm/contact/collider_view.h"
 
 namespace dreampm {
 

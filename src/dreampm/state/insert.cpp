@@ -1,34 +1,61 @@
+#include <algorithm>
+#include <vector>
+
 #include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/column_room.h"
 #include "dreampm/state/grid_topology.h"
 #include "dreampm/state/regroup.h"
 
 namespace dreampm {
 namespace {
 
-/// The old blocks and those of the seeds.
+constexpr std::size_t seeds_at_once = 1 << 10;
+
+/// Makes those blocks part of the world's, in their order; old and new particles are then sorted by
+/// the same rule.
 template <class R>
-BlockList all_blocks(const World<R>& world, std::span<const ParticleSeed> seeds) {
-  std::vector<Vec3i> all = world.particle_blocks;
-  for (const ParticleSeed& n : seeds) {
-    const Vec3i block = world.locate(n.position).block;
-    if (all.empty() || !(all.back() == block)) all.push_back(block);
-  }
+void add_blocks(World<R>& world, std::vector<Vec3i> more) {
   BlockList blocks;
-  blocks.assign(std::move(all));
-  return blocks;
+  more.insert(more.end(), world.particle_blocks.begin(), world.particle_blocks.end());
+  blocks.assign(std::move(more));
+  for (auto& set : world.sets) {
+    std::vector<std::uint32_t> start(blocks.size() + 1, 0);
+    for (std::size_t b = 0, old = 0; b < blocks.size(); ++b) {
+      start[b + 1] = start[b];
+      if (old == world.particle_blocks.size() || !(world.particle_blocks[old] == blocks[b])) continue;
+      if (!set.block_start.empty()) start[b + 1] += set.block_start[old + 1] - set.block_start[old];
+      ++old;
+    }
+    set.block_start = std::move(start);
+  }
+  world.particle_blocks = blocks.all();
 }
 
-/// Puts the values of new particles, value(number of the seed), into a column: place i takes what
-/// `from` names, first the old particles, then the new ones. `from` keeps the order of the old, so
-/// that none moves to a lower place. Takes memory for `room` particles.
-template <class Vector, class Value>
-void extend(Vector& column, const std::vector<std::uint32_t>& from, std::size_t old_size, std::size_t room,
-            const Value& value) {
-  column.reserve(room);
-  column.resize(from.size());
-  for (std::size_t i = from.size(); i-- > 0;)
-    column[i] = from[i] < old_size ? column[from[i]] : value(from[i] - old_size);
+/// The blocks of new particles, by their number in the world's list, which has all of them then.
+template <class R>
+std::vector<std::uint32_t> find_blocks(World<R>& world, const std::vector<typename World<R>::BlockPosition>& places) {
+  BlockList blocks;
+  std::vector<std::uint32_t> found(places.size());
+  const auto find_all = [&] {
+    std::vector<Vec3i> all = world.particle_blocks;
+    blocks.exchange(all);
+    parallel_for(places.size(), seeds_at_once, [&](std::size_t i) {
+      found[i] = static_cast<std::uint32_t>(blocks.find(places[i].block));  // none is the largest
+    });
+  };
+  find_all();
+  std::vector<Vec3i> missing;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (found[i] == static_cast<std::uint32_t>(BlockList::none) &&
+        (missing.empty() || !(missing.back() == places[i].block)))
+      missing.push_back(places[i].block);
+  const bool fits = std::all_of(world.sets.begin(), world.sets.end(), [&](const auto& s) {
+    return s.block_start.size() == world.particle_blocks.size() + 1;
+  });
+  if (!missing.empty() || !fits) add_blocks(world, missing), find_all();
+  return found;
 }
 
 /// Particles that a set may come to hold: with the pools of its emitters, all memory of its columns
@@ -44,13 +71,14 @@ std::size_t room_of(const World<R>& world, std::size_t index, std::size_t size) 
 /// As GridTopology takes them.
 template <class R>
 std::vector<std::uint64_t> cells_of(const World<R>& world) {
-  if (world.drift > 0) return std::vector<std::uint64_t>(world.particle_blocks.size(), ~std::uint64_t{0});
-  std::vector<std::uint64_t> cells(world.particle_blocks.size());
+  std::vector<std::uint64_t> cells(world.particle_blocks.size(), world.drift > 0 ? ~std::uint64_t{0} : 0);
+  if (world.drift > 0) return cells;
   const auto cell = [](R u) { return std::clamp(static_cast<int>(u), 0, block_width - 1); };
-  for (const ParticleSet<R>& set : world.sets)
-    for (std::size_t b = 0; b < cells.size(); ++b)
+  parallel_for(cells.size(), 16, [&](std::size_t b) {
+    for (const ParticleSet<R>& set : world.sets)
       for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
         cells[b] |= std::uint64_t{1} << node_index(cell(set.u[0][p]), cell(set.u[1][p]), cell(set.u[2][p]));
+  });
   return cells;
 }
 
@@ -62,46 +90,41 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   for (const ParticleSeed& n : seeds)
     if (!is_finite(n.position)) fail_run("a particle of material {} has no finite position", set.name);
 
-  // New blocks join the list first, so that old and new particles are sorted by the same rule.
-  const BlockList blocks = all_blocks(world, seeds);
-  const auto place_of = [&](const Vec3i& b) { return static_cast<std::size_t>(blocks.find(b)); };
-  for (auto& s : world.sets) {
-    std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-    for (std::size_t b = 0; b < world.particle_blocks.size() && !s.block_start.empty(); ++b)
-      start[place_of(world.particle_blocks[b]) + 1] = s.block_start[b + 1] - s.block_start[b];
-    for (std::size_t b = 0; b < blocks.size(); ++b) start[b + 1] += start[b];
-    s.block_start = std::move(start);
-  }
-  world.particle_blocks = blocks.all();
+  std::vector<typename World<R>::BlockPosition> places(seeds.size());
+  parallel_for(seeds.size(), seeds_at_once, [&](std::size_t i) { places[i] = world.locate(seeds[i].position); });
+  const std::vector<std::uint32_t> block = find_blocks(world, places);
 
   // Of each block, first those that were there, then the new ones in their order.
-  const std::size_t old_size = set.size();
-  std::vector<std::uint32_t> start(blocks.size() + 1, 0);
-  for (const ParticleSeed& n : seeds) ++start[place_of(world.locate(n.position).block) + 1];
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    start[b + 1] += start[b] + set.block_start[b + 1] - set.block_start[b];
-  std::vector<std::uint32_t> from(start.back()), next(start.begin(), start.end() - 1);
-  for (std::size_t b = 0; b < blocks.size(); ++b)
-    for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) from[next[b]++] = p;
-  for (std::size_t i = 0; i < seeds.size(); ++i)
-    from[next[place_of(world.locate(seeds[i].position).block)]++] = static_cast<std::uint32_t>(old_size + i);
+  const std::size_t blocks = world.particle_blocks.size();
+  std::vector<std::uint32_t> start(blocks + 1, 0), next(blocks), at(seeds.size());
+  for (const std::uint32_t b : block) ++start[b + 1];
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const std::uint32_t there = set.block_start[b + 1] - set.block_start[b];
+    next[b] = start[b] + there;
+    start[b + 1] += next[b];
+  }
+  for (std::size_t i = 0; i < seeds.size(); ++i) at[i] = next[block[i]]++;
 
-  const std::size_t room = room_of(world, index, from.size());
-  extend(set.id, from, old_size, room, [&](std::size_t i) { return seeds[i].id; });
-  for (int a = 0; a < 3; ++a)
-    extend(set.u[a], from, old_size, room, [&](std::size_t i) { return world.locate(seeds[i].position).at[a]; });
+  const ColumnRoom opening(set.block_start, start);
+  const std::size_t room = room_of(world, index, start.back());
+  const auto extend = [&](auto& column, const auto& value) {
+    column.reserve(room);
+    column.resize(start.back());
+    opening.open(std::span(column));
+    parallel_for(seeds.size(), seeds_at_once, [&](std::size_t i) { column[at[i]] = value(i); });
+  };
+  extend(set.id, [&](std::size_t i) { return seeds[i].id; });
+  for (int a = 0; a < 3; ++a) extend(set.u[a], [&](std::size_t i) { return places[i].at[a]; });
   if (set.has_own())
-    for (int a = 0; a < 3; ++a)
-      extend(set.own[a], from, old_size, room, [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
+    for (int a = 0; a < 3; ++a) extend(set.own[a], [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
   if (set.carries_motion)
     for (int c = 0; c < 9; ++c)
-      extend(set.gradient[static_cast<std::size_t>(c)], from, old_size, room,
+      extend(set.gradient[static_cast<std::size_t>(c)],
              [&](std::size_t i) { return static_cast<R>(seeds[i].gradient(c / 3, c % 3)); });
   Materials::with(set.material, [&]<class M>() {
     set.state.resize(state_columns<M>);
     for (int c = 0; c < state_columns<M>; ++c)
-      extend(set.state[c], from, old_size, room,
-             [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
+      extend(set.state[c], [&](std::size_t) { return static_cast<R>(M::template State<R>::rest[c]); });
   });
   set.block_start = std::move(start);
   GridFields<R> spare;
@@ -125,11 +148,17 @@ std::size_t erase(World<R>& world, std::size_t index, const std::vector<bool>& k
     for (std::uint32_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) start[b + 1] += keep[p];
   }
   set.block_start = std::move(start);
-  compact(set.id);
-  for (auto& axis : set.u) compact(axis);
-  for (auto& column : set.state) compact(column);
-  for (auto& axis : set.own) compact(axis);
-  for (auto& column : set.gradient) compact(column);
+  std::vector<LargeVector<R>*> columns;
+  for (auto& axis : set.u) columns.push_back(&axis);
+  for (auto& column : set.state) columns.push_back(&column);
+  for (auto& axis : set.own) columns.push_back(&axis);
+  for (auto& column : set.gradient) columns.push_back(&column);
+  parallel_for(columns.size() + 1, 1, [&](std::size_t c) {
+    if (c < columns.size())
+      compact(*columns[c]);
+    else
+      compact(set.id);
+  });
   return keep.size() - set.size();
 }
 

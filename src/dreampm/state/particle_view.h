@@ -6,6 +6,7 @@
 #include <span>
 #include <string_view>
 
+#include "dreampm/state/block_bounds.h"
 #include "dreampm/state/particle_state.h"
 #include "dreampm/state/world.h"
 
@@ -38,12 +39,22 @@ class ParticleSetView {
   /// Calls body(p, x) for every particle, x its scene position [m].
   template <class Body>
   void for_each(const Body& body) const {
+    for (std::size_t b = 0; b + 1 < set_.block_start.size(); ++b) for_block(b, body);
+  }
+  /// The same for those in blocks that reach into a box [m], between the steps.
+  template <class Body>
+  void for_each_near(const Box3d& box, const Body& body) const {
     for (std::size_t b = 0; b + 1 < set_.block_start.size(); ++b)
-      for (std::size_t p = set_.block_start[b]; p < set_.block_start[b + 1]; ++p)
-        body(p, world_.position(world_.particle_blocks[b], Vec3<R>{set_.u[0][p], set_.u[1][p], set_.u[2][p]}));
+      if (meet(bounds_of_block(world_, world_.particle_blocks[b], 1), box)) for_block(b, body);
   }
 
  private:
+  template <class Body>
+  void for_block(std::size_t b, const Body& body) const {
+    for (std::size_t p = set_.block_start[b]; p < set_.block_start[b + 1]; ++p)
+      body(p, world_.position(world_.particle_blocks[b], Vec3<R>{set_.u[0][p], set_.u[1][p], set_.u[2][p]}));
+  }
+
   const World<R>& world_;
   const ParticleSet<R>& set_;
 };

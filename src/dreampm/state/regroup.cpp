@@ -6,10 +6,9 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
-#include "dreampm/physics/transfer.h"
 #include "dreampm/state/grid_topology.h"
-#include "dreampm/state/mechanics.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/take_out.h"
 #include "dreampm/state/world_fields.h"
 
 namespace dreampm {
@@ -51,11 +50,16 @@ constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
   return cells;
 }();
 
-/// For each of the 27 neighbors the first that is the same block: on periodic axes of one or two
-/// blocks some are.
+/// Where what sinks take goes instead of to a neighbor.
+constexpr std::uint8_t nowhere = 27;
+
+/// For each of the 27 neighbors, and `nowhere`, the first that is the same block: on periodic axes
+/// of one or two blocks some are.
+using Alike = std::array<std::uint8_t, 28>;
 template <class R>
-std::array<std::uint8_t, 27> first_alike(const World<R>& world) {
-  std::array<std::uint8_t, 27> first{};
+Alike first_alike(const World<R>& world) {
+  Alike first{};
+  first[nowhere] = nowhere;
   for (int n = 0; n < 27; ++n)
     for (int m = n; m >= 0; --m)
       if (world.wrapped(neighbor_offset(m)) == world.wrapped(neighbor_offset(n)))
@@ -87,7 +91,7 @@ struct Sources {
 template <class R>
 struct SetRoom {
   /// Of each old block the place in `order` where those begin that move to neighbor n; [27] is the
-  /// end.
+  /// end of all that stay in the world.
   std::vector<std::array<std::uint32_t, 28>> runs;
   std::vector<std::uint32_t> order;   ///< the particles of each old block, by the neighbor that they move to
   std::vector<std::uint32_t> from;    ///< of each particle its old place,
@@ -118,11 +122,12 @@ void in_quarters(std::uint32_t count, const Body& body) {
   for (std::uint32_t i = 4 * quarter; i < count; ++i) body(3, i);
 }
 
-/// Orders the particles of an old block by the neighbor that they move to, stably. Returns the
-/// neighbors that any moves to, as HaloMask::around.
+/// Orders the particles of an old block by the neighbor that they move to, stably; those `taken`
+/// [numbers in the set, rising] move nowhere. Returns the neighbors that any moves to, as
+/// HaloMask::around.
 template <class R>
-std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
-                   const std::array<std::uint8_t, 27>& alike) {
+std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b, const Alike& alike,
+                   const std::vector<std::uint32_t>& taken) {
   const std::uint32_t begin = set.block_start[b], count = set.block_start[b + 1] - begin;
   if (count >= 1u << (32 - cell_bits))
     fail_run("{} particles of material {} lie in one block of 4 x 4 x 4 cells", count, set.name);
@@ -133,17 +138,18 @@ std::uint64_t part(const ParticleSet<R>& set, SetRoom<R>& room, std::size_t b,
     const int neighbor = ((side_of(x[i]) + 1) * 3 + side_of(y[i]) + 1) * 3 + side_of(z[i]) + 1;
     key[i] = static_cast<std::uint32_t>(neighbor << cell_bits | turn_of(cell_of(x[i]), cell_of(y[i]), cell_of(z[i])));
   }
-  std::array<std::array<std::uint32_t, 27>, 4> next{};
+  for (auto p = std::lower_bound(taken.begin(), taken.end(), begin); p != taken.end() && *p < begin + count; ++p)
+    key[*p - begin] = std::uint32_t{nowhere} << cell_bits;
+  std::array<std::array<std::uint32_t, 28>, 4> next{};
   in_quarters(count, [&](std::size_t q, std::uint32_t i) { ++next[q][alike[key[i] >> cell_bits]]; });
   auto& runs = room.runs[b];
   std::uint64_t seen = 0;
   std::uint32_t at = begin;
-  for (std::size_t n = 0; n < 27; ++n) {
+  for (std::size_t n = 0; n < 28; ++n) {
     runs[n] = at;
     for (auto& quarter : next) at += std::exchange(quarter[n], at);
-    if (at > runs[n]) seen |= halo_bit(neighbor_offset(static_cast<int>(n)));
+    if (at > runs[n] && n != nowhere) seen |= halo_bit(neighbor_offset(static_cast<int>(n)));
   }
-  runs[27] = at;
   in_quarters(count, [&](std::size_t q, std::uint32_t i) {
     room.order[next[q][alike[key[i] >> cell_bits]]++] = i << cell_bits | (key[i] & cell_mask);
   });
@@ -211,6 +217,7 @@ struct Regroup<R>::Scratch {
   std::vector<Sources> sources;      ///< of every new block,
   std::vector<std::uint64_t> cells;  ///< and its cells with particles
   std::vector<SetRoom<R>> sets;
+  std::vector<std::vector<std::uint32_t>> taken;  ///< by set, what sinks take: it moves nowhere
   GridTopology<R> topology;
 
   void find_moves(World<R>& world);
@@ -230,7 +237,7 @@ void Regroup<R>::Scratch::find_moves(World<R>& world) {
   const auto alike = first_alike(world);
   parallel_for(old.size(), 16, [&](std::size_t b) {
     reach[b] = {old[b], 0};
-    for (std::size_t s = 0; s < sets.size(); ++s) reach[b].around |= part(world.sets[s], sets[s], b, alike);
+    for (std::size_t s = 0; s < sets.size(); ++s) reach[b].around |= part(world.sets[s], sets[s], b, alike, taken[s]);
   });
 }
 
@@ -319,85 +326,16 @@ Regroup<R>::Regroup() : scratch_(std::make_unique<Scratch>()) {}
 template <class R>
 Regroup<R>::~Regroup() = default;
 
-namespace {
-
-/// What a particle of block `b` will have of the grid's velocities, or has already: v [m/s] and C
-/// [1/s].
-template <class R>
-std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& set, std::size_t b, std::size_t p) {
-  if (set.carries_motion) {
-    Mat3d c{};
-    for (int n = 0; n < 9; ++n) c(n / 3, n % 3) = static_cast<double>(set.gradient[static_cast<std::size_t>(n)][p]);
-    return {static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c};
-  }
-  const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
-  const Vec3i first =
-      first_stencil(world.particle_blocks[b]) + Vec3i{stencil.node(0), stencil.node(1), stencil.node(2)};
-  const Nodes<R>& nodes = world.grid.field(world.field_of(set));
-  const auto node = [&](int i, int j, int k) {
-    const Vec3i at = first + Vec3i{i, j, k};
-    const std::int32_t block = world.grid.blocks.find(world.wrapped(block_of(at)));
-    return block == BlockList::none ? Node<R>{}
-                                    : nodes[static_cast<std::size_t>(block) * block_nodes +
-                                            static_cast<std::size_t>(node_index(at.x & 3, at.y & 3, at.z & 3))];
-  };
-  const Moments<Node<R>> found = gather<Node<R>, no_bends>(
-      stencil, [&](int i, int j) { return NodeRow<Node<R>>{{node(i, j, 0), node(i, j, 1), node(i, j, 2)}}; });
-  Mat3d c{};
-  for (int row = 0; row < 3; ++row)
-    for (int a = 0; a < 3; ++a) {
-      const Node<R>& moment = found.first_moment[a];
-      const R rows[3] = {moment.x, moment.y, moment.z};
-      c(row, a) = static_cast<double>(rows[row]) * apic_inertia / world.dx;
-    }
-  return {static_cast<Vec3d>(Vec3<R>{found.value.x, found.value.y, found.value.z}), c};
-}
-
-/// Takes the matter in sinks out, whose grid holds velocities: with its momentum as it would go on.
-template <class R>
-void take_out(World<R>& world) {
-  std::vector<bool> keep;
-  for (Sink& sink : world.sinks) {
-    // Matter feels a collider, and may turn away from it, about a cell before it is there.
-    const double reach = sink.collider ? world.dx : 0;
-    const Box3d own = sink.collider ? world.colliders[*sink.collider].bounds() : sink.shape->bounds();
-    const Box3d bounds{own.min - Vec3d{reach, reach, reach}, own.max + Vec3d{reach, reach, reach}};
-    const Pose pose = sink.path ? sink.path->pose_at(world.time) : Pose{};
-    const auto holds = [&](const Vec3d& place) {
-      const Vec3d x = sink.path ? pose.inverse(place) : place;
-      return bounds.contains(x) &&
-             (sink.collider ? world.colliders[*sink.collider].distance(x) : sink.shape->distance(x)) < reach;
-    };
-    for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      const ParticleSet<R>& set = world.sets[s];
-      keep.assign(set.size(), true);
-      bool any = false;
-      for (std::size_t b = 0; b + 1 < set.block_start.size(); ++b)
-        for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-          const Vec3d x = world.position(world.particle_blocks[b], {set.u[0][p], set.u[1][p], set.u[2][p]});
-          if (!holds(x)) continue;
-          keep[p] = false, any = true;
-          const auto [v, c] = gathered(world, set, b, p);
-          sink.momentum += v * set.mass;
-          sink.angular += angular_momentum(set, world.dx, x, v, c);
-        }
-      if (!any) continue;
-      const std::size_t taken = erase(world, s, keep);
-      sink.taken += taken, world.left += taken;
-    }
-  }
-}
-
-}  // namespace
-
 template <class R>
 void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare, bool far) {
-  // Before the first step the grid still holds momenta, with what would be taken out of the matter.
-  if (world.step > 0) take_out(world);
   Scratch& s = *scratch_;
+  // Before the first step the grid still holds momenta, with what would be taken out of the matter.
+  s.taken.assign(world.sets.size(), {});
+  if (world.step > 0 && !world.sinks.empty()) s.taken = take_out(world, far);
   const auto sort = [&] { s.find_moves(world), s.find_blocks(world), s.find_places(world); };
   sort();
   if (far) {
+    s.taken.assign(world.sets.size(), {});
     for (std::size_t n = 0; n < world.sets.size(); ++n) {
       s.move_places(world.sets[n], s.sets[n]);
       s.sets[n].before.swap(s.sets[n].from);

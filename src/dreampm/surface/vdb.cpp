@@ -2,7 +2,7 @@
 
 #include <openvdb/openvdb.h>
 
-#include "dreampm/geometry/vdb_file.h"
+#include "dreampm/import/vdb_file.h"
 
 namespace dreampm {
 

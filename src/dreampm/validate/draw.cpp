@@ -10,7 +10,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/transfers.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/simulation/assemble.h"
+#include "dreampm/setup/assemble.h"
 #include "dreampm/validate/crush.h"
 
 namespace dreampm::validate {

@@ -222,7 +222,7 @@ class Cpu final : public Backend<float> {
 
   void prepare_sets(World<float>& world, double dt, double dt_next, Motion<float>* motion) {
     sets_.resize(world.sets.size());
-    if (motion) motion->sets.assign(world.sets.size(), {});
+    if (motion) motion->sets.resize(world.sets.size());  // whose memory serves again
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       ParticleSet<float>& set = world.sets[s];
       SetPass& p = sets_[s];

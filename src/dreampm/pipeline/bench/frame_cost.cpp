@@ -7,9 +7,9 @@
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/file.h"
+#include "dreampm/pictures/frames.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/probes.h"
-#include "dreampm/simulation/frames.h"
 
 namespace dreampm {
 namespace {

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dreampm/base/error.h"
 #include "dreampm/math/rng.h"
+#include "dreampm/physics/materials.h"
 
 namespace dreampm {
 namespace {
 
-constexpr double bench_dx = 0.02;
 constexpr double cells_per_step = 0.05;  ///< a sort every 18 or 19 steps; the fastest of a collapsing column
 
 /// An empty domain for matter of `material`, a liquid as stiff as `depth` cells of it need.
@@ -85,6 +86,17 @@ BenchScene drop_scene(const MaterialInfo& material, int width, const Vec3i& doma
   const Vec3i first{(domain.x - width) / 2, (domain.y - width) / 2, (domain.z - width) / 2};
   fill(scene, first, {width, width, width}, {0, -speed_of(scene.world, material), 0});
   return scene;
+}
+
+const MaterialInfo& bench_material(const std::string& name) {
+  if (const MaterialInfo* material = find_material(name)) return *material;
+  std::string names;
+  for (const MaterialInfo& m : material_infos()) names += (names.empty() ? "" : ", ") + std::string(m.name);
+  fail_input("--material {}: there is no such material; there are {}", name, names);
+}
+
+void check_particles(std::uint64_t particles) {
+  if (particles < 64 || particles > 200000000) fail_input("--particles {}: give 64 to 200000000", particles);
 }
 
 Vec3i column_cells(std::uint64_t particles) {

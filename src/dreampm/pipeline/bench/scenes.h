@@ -2,6 +2,7 @@
 // cell a step, so that sorting has its share.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "dreampm/physics/param.h"
@@ -9,6 +10,8 @@
 #include "dreampm/state/world.h"
 
 namespace dreampm {
+
+inline constexpr double bench_dx = 0.02;  ///< m, a cell
 
 /// A world without matter yet, and its matter: what begin() takes.
 struct BenchScene {
@@ -28,6 +31,12 @@ BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count);
 
 /// A cube of `width`^3 cells that falls in the middle of a domain of `domain` cells.
 BenchScene drop_scene(const MaterialInfo& material, int width, const Vec3i& domain);
+
+/// Of that name. Throws InputError where there is none.
+const MaterialInfo& bench_material(const std::string& name);
+
+/// Throws InputError for a number of particles with which nothing can be measured.
+void check_particles(std::uint64_t particles);
 
 /// Cells of a column of about `particles` particles, of the shape 2:2:1.
 Vec3i column_cells(std::uint64_t particles);

@@ -6,9 +6,9 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/bench/moment.h"
-#include "dreampm/simulation/assemble.h"
-#include "dreampm/simulation/engine.h"
-#include "dreampm/simulation/start.h"
+#include "dreampm/run/engine.h"
+#include "dreampm/setup/assemble.h"
+#include "dreampm/setup/start.h"
 
 namespace dreampm {
 namespace {

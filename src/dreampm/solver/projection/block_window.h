@@ -19,17 +19,15 @@ class Window {
   static constexpr int width = block_width + 2 + 2 * reach;
 
   Window(const CellRows& cells, const Vec3i& block) : first_(first_stencil(block) - Vec3i{reach, reach, reach}) {
-    // A block of the grid is there wherever particles reach, with the tile that it is half of.
+    // Rows are there wherever particles reach, and so are those before a row that they reach.
     const std::int32_t z = block.z * block_width & ~(row_cells - 1);
     const auto before = static_cast<std::size_t>(z - first_.z);
     const Vec3i last = first_ + Vec3i{width - 1, width - 1, 0};
-    for (std::int32_t x = first_.x >> 2; x <= last.x >> 2; ++x)
-      for (std::int32_t y = first_.y >> 2; y <= last.y >> 2; ++y) {
-        const CellRows::Tile tile = cells.tile_of({x * block_width, y * block_width, z});
-        for (std::int32_t i = std::max(first_.x, x * block_width); i <= std::min(last.x, x * block_width + 3); ++i)
-          for (std::int32_t j = std::max(first_.y, y * block_width); j <= std::min(last.y, y * block_width + 3); ++j)
-            columns_[(i - first_.x) * width + j - first_.y] = tile.place_before(i & 3, j & 3, before);
-      }
+    cells.for_tiles_around({first_.x, first_.y, z}, width, [&](int x, int y, const CellRows::Tile* tile) {
+      for (int i = std::max(first_.x, x); i <= std::min(last.x, x + block_width - 1); ++i)
+        for (int j = std::max(first_.y, y); j <= std::min(last.y, y + block_width - 1); ++j)
+          columns_[(i - first_.x) * width + j - first_.y] = tile ? tile->place_before(i - x, j - y, before) : 0;
+    });
   }
   /// The cell that places count from.
   const Vec3i& first() const { return first_; }

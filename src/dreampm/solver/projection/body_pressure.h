@@ -2,6 +2,7 @@
 // stable however light it is (Batty, Bertails and Bridson 2007, section 5).
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "dreampm/solver/projection/body_motion.h"
@@ -31,16 +32,19 @@ class BodyPressure final : public AddedOperator<R> {
   /// Adds to the bodies' twists what the pressure gives them, `times` so much.
   void move_bodies(World<R>& world, const LargeVector<R>& impulse, double times);
 
+  /// A cell at a face that a body, by its place in World::rigid, closes, and what the face adds to
+  /// the cell's column of J.
+  struct Cell {
+    std::uint32_t place, body;
+    Six column;
+  };
+  std::span<const Cell> cells() const { return cells_; }
+
  private:
   struct Body {
     std::size_t collider;
     SixBySix response;  ///< M^-1 rho dx^3
     Six sum, gain;
-  };
-  /// A cell at a face that a body closes, and what the face adds to its column of J.
-  struct Cell {
-    std::uint32_t place, body;
-    Six column;
   };
   /// The velocity of what it closes of a face for each component of a body's twist, times the part.
   Six column(const World<R>& world, std::uint32_t body, const typename CutCells<R>::ClosedFace& face);

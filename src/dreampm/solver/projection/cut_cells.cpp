@@ -127,18 +127,32 @@ FacePart face_part(const NodeDistances& d, const Vec3i& low, int axis) {
   return {1 - closed.part, closed.along / closed.part, closed.up / closed.part};
 }
 
-/// What colliders fill of a cell, with its moment about the cell's low corner [cells].
-ClosedCube filled_part(const NodeDistances& d, const Vec3i& low) {
-  ClosedCube filled;
-  for (int n = 0; n < 8; ++n) {
-    const Vec3i eighth{n >> 2, n >> 1 & 1, n & 1};
-    double at[8];
-    for (int m = 0; m < 8; ++m) at[m] = 2 * d(low + eighth + Vec3i{m >> 2, m >> 1 & 1, m & 1});
-    const ClosedCube part = closed_cube(at);
-    filled.part += part.part / 8, filled.moment += (part.moment + static_cast<Vec3d>(eighth) * part.part) / 16;
+/// What colliders fill of the eighths of a block's cells, and of those on its low sides.
+class Eighths {
+ public:
+  explicit Eighths(const NodeDistances& d) {
+    for (int n = 0; n < along * along * along; ++n) {
+      const Vec3i low = Vec3i{n / (along * along), n / along % along, n % along} - Vec3i{1, 1, 1};
+      double at[8];
+      for (int m = 0; m < 8; ++m) at[m] = 2 * d(low + Vec3i{m >> 2, m >> 1 & 1, m & 1});
+      filled_[static_cast<std::size_t>(n)] = closed_cube(at);
+    }
   }
-  return filled;
-}
+  /// Of the cube of eight whose first is `low`, with its moment about its low corner [cells].
+  ClosedCube of_cube(const Vec3i& low) const {
+    ClosedCube filled;
+    for (int n = 0; n < 8; ++n) {
+      const Vec3i eighth{n >> 2, n >> 1 & 1, n & 1}, at = low + eighth + Vec3i{1, 1, 1};
+      const ClosedCube& part = filled_[static_cast<std::size_t>((at.x * along + at.y) * along + at.z)];
+      filled.part += part.part / 8, filled.moment += (part.moment + static_cast<Vec3d>(eighth) * part.part) / 16;
+    }
+    return filled;
+  }
+
+ private:
+  static constexpr int along = 2 * block_width + 1;
+  std::array<ClosedCube, along * along * along> filled_;
+};
 
 /// The part of the kernel of a cell, a tent two cells wide, that lies outside of colliders.
 double open_kernel(const NodeDistances& d, const Vec3i& low) {
@@ -195,6 +209,7 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
   // diagonal away.
   if (d.least() > 1.8) return nullptr;
   auto cut = std::make_unique<Block>();
+  const Eighths eighths(d);
   for (int n = 0; n < block_nodes; ++n) {
     const Vec3i c = node_offset(n);
     const auto at = static_cast<std::size_t>(n);
@@ -206,9 +221,13 @@ std::unique_ptr<typename CutCells<R>::Block> CutCells<R>::cut_block(const World<
       Vec3i middle = low + Vec3i{1, 1, 1};
       middle[static_cast<int>(a)] -= 1;
       cut->gap[a][at] = static_cast<R>(d(middle));
+      Vec3i across, beside = low - Vec3i{1, 1, 1};
+      across[static_cast<int>(a)] = 1, beside[static_cast<int>(a)] += 1;
+      cut->filled_at_face[a][at] = static_cast<R>(eighths.of_cube(low - across).part);
+      cut->filled_at_edge[a][at] = static_cast<R>(eighths.of_cube(beside).part);
     }
     cut->room[at] = static_cast<R>(open_kernel(d, low));
-    const ClosedCube filled = filled_part(d, low);
+    const ClosedCube filled = eighths.of_cube(low);
     cut->filled[at] = static_cast<R>(filled.part);
     cut->filled_middle[at] = static_cast<Vec3<R>>(filled.part > 0 ? filled.moment / filled.part : filled.moment);
     cut->filler[at] =

@@ -7,9 +7,9 @@
 #include <unordered_map>
 #include <vector>
 
+#include "dreampm/contact/collider_view.h"
 #include "dreampm/math/vec_hash.h"
 #include "dreampm/solver/projection/mac_grid.h"
-#include "dreampm/state/collider_view.h"
 
 namespace dreampm {
 
@@ -88,6 +88,28 @@ class CutCells {
     });
   }
 
+  /// What colliders fill of a cell, and of cubes of that size around the middles of its low face
+  /// of an axis and of its edge along an axis on its low sides.
+  struct FilledParts {
+    std::size_t place;
+    R cell;
+    std::array<R, 3> face, edge;
+    std::uint16_t owner;  ///< the collider nearest to the cell; none where nothing fills it
+  };
+  /// Calls body(FilledParts) for the cells of a block near colliders, after `cut`.
+  template <class Body>
+  void for_parts(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end() || !found->second) return;
+    const Block& cut = *found->second;
+    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+      FilledParts parts{place, cut.filled[n], {}, {}, cut.filler[n]};
+      for (std::size_t a = 0; a < 3; ++a)
+        parts.face[a] = cut.filled_at_face[a][n], parts.edge[a] = cut.filled_at_edge[a][n];
+      body(parts);
+    });
+  }
+
   /// Moves the particles of one block of particles along colliders instead of into them.
   class Collisions {
    public:
@@ -131,6 +153,7 @@ class CutCells {
     std::array<R, block_nodes> filled;
     std::array<Vec3<R>, block_nodes> filled_middle;
     std::array<std::uint16_t, block_nodes> filler;
+    std::array<std::array<R, block_nodes>, 3> filled_at_face, filled_at_edge;  ///< as FilledParts
   };
   /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
   static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);

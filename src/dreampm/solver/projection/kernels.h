@@ -107,6 +107,16 @@ struct MatrixRows {
   R *diagonal, *low[3], *b;
 };
 
+/// Sums over the faces of some rows, each by the particles of liquid that it has.
+struct EnergySums {
+  double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
+  double projected = 0;  ///< and in the end
+  /// What was lost between: that by which a face is slower than gravity would have it, times the
+  /// mean of its speeds before and after [m^2/s^2].
+  double lost = 0;
+  void add(const EnergySums& b) { given += b.given, projected += b.projected, lost += b.lost; }
+};
+
 /// Loops over the rows [begin, end) of a grid, for the functions of pressure.h.
 template <class R>
 struct RowKernels {
@@ -122,6 +132,8 @@ struct RowKernels {
   void (*extend)(Grid grid, std::size_t begin, std::size_t end, int axis, bool bring_free);
   /// `moving` becomes `velocity` without the slope of `displacement` [m/s for each cell] at liquid.
   void (*move)(Grid grid, std::size_t begin, std::size_t end, const R* displacement, R speed);
+  /// Adds those of the rows to `sums`, once velocities are extended; `gained`: from gravity [m/s].
+  void (*energies)(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& gained, EnergySums& sums);
 };
 
 /// A level of the multigrid (PressureLevel), as loops over its rows see it.

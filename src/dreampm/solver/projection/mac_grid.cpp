@@ -16,6 +16,49 @@ void fill(Field& field, std::size_t size, T value) {
   });
 }
 
+/// The cells of a block that hold particles, by their stencils: bit k of [i][j].
+template <class R>
+std::array<std::array<std::uint8_t, block_width>, block_width> held_cells(const World<R>& world, std::size_t b) {
+  std::array<std::uint8_t, block_nodes> held{};
+  for (const ParticleSet<R>& set : world.sets) {
+    if (set.size() == 0) continue;
+    const R *x = set.u[0].data(), *y = set.u[1].data(), *z = set.u[2].data();
+    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
+      // A place just before the end of its block may be rounded to that.
+      const auto at = [](R u) { return std::min(static_cast<int>(u), block_width - 1); };
+      held[static_cast<std::size_t>(node_index(at(x[p]), at(y[p]), at(z[p])))] = 1;
+    }
+  }
+  std::array<std::array<std::uint8_t, block_width>, block_width> bits{};
+  for (std::size_t n = 0; n < block_nodes; ++n) {
+    const Vec3i at = node_offset(static_cast<int>(n));
+    bits[static_cast<std::size_t>(at.x)][static_cast<std::size_t>(at.y)] |= static_cast<std::uint8_t>(held[n] << at.z);
+  }
+  return bits;
+}
+
+/// Marks the cells that matter gives enough to be liquid: those that a particle is between.
+template <class R>
+void mark_matter(const World<R>& world, CellRows& cells) {
+  parallel_for(world.particle_blocks.size(), 16, [&](std::size_t b) {
+    const auto held = held_cells(world, b);
+    const Vec3i first = first_stencil(world.particle_blocks[b]);
+    for (int i = 0; i <= block_width; ++i)
+      for (int j = 0; j <= block_width; ++j) {
+        unsigned bits = 0;
+        for (int x = std::max(i - 1, 0); x <= std::min(i, block_width - 1); ++x)
+          for (int y = std::max(j - 1, 0); y <= std::min(j, block_width - 1); ++y)
+            bits |= held[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)];
+        cells.mark(first + Vec3i{i, j, 0}, static_cast<std::uint8_t>(bits | bits << 1));
+      }
+  });
+}
+
+/// Of the faces beside liquid, to which velocities are extended (extend_velocities).
+constexpr int extended_layers = 2;
+/// From liquid to the cells that colliders cut which it may fill (find_depths).
+constexpr int filled_by_colliders = 4;
+
 }  // namespace
 
 template <class R>
@@ -25,7 +68,6 @@ void MacGrid<R>::lay(const World<R>& world) {
     const std::int32_t tile = a == 2 ? row_cells : block_width;
     if (world.periodic[static_cast<std::size_t>(a)]) period[a] = (world.high[a] - world.low[a]) / tile;
   }
-  cells.lay(world.grid.blocks.all(), period);
   low = world.low, high = world.high;
   // What passes an open wall is taken out a box length behind it, when particles are sorted.
   for (int a = 0; a < 3; ++a) {
@@ -34,6 +76,14 @@ void MacGrid<R>::lay(const World<R>& world) {
     if (world.walls[side].type == WallType::open) low[a] -= beyond;
     if (world.walls[side + 1].type == WallType::open) high[a] += beyond;
   }
+  cells.begin(world.grid.blocks.all(), period);
+  mark_matter(world, cells);
+  for (int n = 0; n < (world.colliders.empty() ? 0 : filled_by_colliders); ++n) cells.spread(CellRows::Spread::around);
+  cells.spread(CellRows::Spread::high);
+  for (int n = 0; n < extended_layers; ++n) cells.spread(CellRows::Spread::around);
+  // Particles before a wall read behind it.
+  for (int a = 0; a < 3; ++a) cells.mark_beside(a, low[a], low[a] - 1), cells.mark_beside(a, high[a] - 1, high[a]);
+  cells.finish();
   for (std::size_t w = 0; w < 6; ++w) holding.walls[w] = world.walls[w].type == WallType::stick;
   holding.colliders.clear();
   for (const Collider& c : world.colliders) holding.colliders.push_back(c.contact() == WallType::stick);

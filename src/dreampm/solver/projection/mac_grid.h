@@ -85,9 +85,8 @@ struct MacGrid {
   }
 
   const RowKernels<R>* kernels = &projection_kernels<R>("auto").rows;
-  /// Calls body(kernels, its fields, begin, end) for pieces of rows.
-  template <class Body>
-  void with_kernels(std::span<const CellRows::Row> rows, const Body& body) {
+  /// Those rows of it, as kernels see them.
+  GridRows<R> as_rows(std::span<const CellRows::Row> rows) {
     GridRows<R> grid{rows.data(), low, high, {}, {}, {}, {}, depth.data(), impulse.data(), {}, {}, {}};
     for (std::size_t a = 0; a < 3; ++a) {
       grid.sums[a] = sums[a].data(), grid.open[a] = open[a].data();
@@ -95,6 +94,12 @@ struct MacGrid {
       grid.lightness[a] = lightness[a].empty() ? nullptr : lightness[a].data();
       grid.free[a] = free[a].data(), grid.velocity[a] = velocity[a].data(), grid.moving[a] = moving[a].data();
     }
+    return grid;
+  }
+  /// Calls body(kernels, its fields, begin, end) for pieces of rows.
+  template <class Body>
+  void with_kernels(std::span<const CellRows::Row> rows, const Body& body) {
+    const GridRows<R> grid = as_rows(rows);
     parallel_ranges(rows.size(), 64, [&](std::size_t begin, std::size_t end) { body(*kernels, grid, begin, end); });
   }
 
@@ -121,6 +126,18 @@ struct MacGrid {
   /// -1 where there is none.
   int wall_at(int axis, std::int32_t cell) const {
     return cell == low[axis] ? 2 * axis : cell == high[axis] ? 2 * axis + 1 : -1;
+  }
+  /// Calls body(lane, wall) for the cells of a row whose low faces of an axis lie on a closed wall.
+  template <class Body>
+  void for_on_walls(int axis, const CellRows::Row& row, const Body& body) const {
+    if (axis < 2) {
+      const int wall = wall_at(axis, row.first[axis]);
+      for (int lane = 0; wall >= 0 && lane < row_cells; ++lane) body(lane, wall);
+    } else {
+      const int low_lane = low.z - row.first.z, high_lane = high.z - row.first.z;
+      if (low_lane >= 0 && low_lane < row_cells) body(low_lane, 4);
+      if (high_lane >= 0 && high_lane < row_cells) body(high_lane, 5);
+    }
   }
   /// Of a row of cells: the numbers [first, second) of those between the walls; none where the row
   /// itself is outside of them.

@@ -92,7 +92,7 @@ void PressureSolver<R>::set_up() {
   for (std::size_t l = 0; l + 1 < depth_; ++l) {
     PressureLevel<R>&fine = levels_[l], &level = levels_[l + 1];
     Coarse& coarse = coarse_[l];
-    coarse.cells.lay_coarser(*fine_cells);
+    coarse.cells.lay_coarser(*fine_cells, fine.rows);
     lay_whole(level, coarse.cells);
     coarse.children.resize(level.rows.size());
     resize_for_overwrite(parent_of_, fine_cells->size() / row_cells);

@@ -239,8 +239,7 @@ void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix) {
 }
 
 template <class R>
-std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving) {
-  const std::span<const Row> rows = grid.cells.rows();
+std::size_t let_go_of_walls(MacGrid<R>& grid, std::span<const Row> rows, const Leaving& leaving) {
   const std::size_t gone = parallel_reduce(rows.size(), std::size_t{0}, [&](std::size_t& count, std::size_t n) {
     const RowPlaces at(rows[n]);
     for (std::size_t l = 0; l < row_cells; ++l) {
@@ -292,26 +291,20 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
       const auto axis = static_cast<int>(a);
-      const auto stop = [&](std::size_t l) {
+      grid.for_on_walls(axis, row, [&](int lane, int wall) {
+        const auto l = static_cast<std::size_t>(lane);
         const std::size_t c = at.own + l, below = at.low[a] + l;
         if (grid.open[a][c] > R(0)) return;
-        const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
-        const bool high = cell[axis] == grid.high[axis];
+        const Vec3i cell = row.first + Vec3i{0, 0, lane};
+        const bool high = wall % 2 != 0;
         for (int t = 0; t < 3; ++t)
           if (t != axis && !grid.within(t, cell[t])) return;
         // What leaves the wall goes on as it was.
         const R free = grid.free[a][c];
-        const bool leaves = leaving.walls[2 * a + (high ? 1 : 0)] < Leaving::never && !(d[high ? below : c] > R(0)) &&
-                            is_known(free) && (high ? free < R(0) : free > R(0));
+        const bool leaves = leaving.walls[static_cast<std::size_t>(wall)] < Leaving::never &&
+                            !(d[high ? below : c] > R(0)) && is_known(free) && (high ? free < R(0) : free > R(0));
         grid.velocity[a][c] = leaves ? free : R(0);
-      };
-      if (axis < 2) {
-        if (grid.wall_at(axis, row.first[axis]) < 0) continue;
-        for (std::size_t l = 0; l < row_cells; ++l) stop(l);
-      } else {
-        for (const std::int32_t wall : {grid.low.z - row.first.z, grid.high.z - row.first.z})
-          if (wall >= 0 && wall < row_cells) stop(static_cast<std::size_t>(wall));
-      }
+      });
     }
   });
   for (auto& f : grid.velocity) grid.wrap(f);
@@ -363,15 +356,15 @@ void find_moving_velocities(MacGrid<R>& grid, double dx, double dt) {
   for (auto& f : grid.moving) grid.wrap(f);
 }
 
-#define DM_INSTANTIATE(R)                                                  \
-  template void find_free_velocities(MacGrid<R>&, const Vec3d&);           \
-  template void find_depths(MacGrid<R>&, double);                          \
-  template void fill_matrix(MacGrid<R>&, PressureLevel<R>&);               \
-  template std::size_t let_go_of_walls(MacGrid<R>&, const Leaving&);       \
-  template void add_pressure(MacGrid<R>&, double);                         \
-  template void apply_pressure(MacGrid<R>&, const Leaving&);               \
-  template void extend_velocities(MacGrid<R>&);                            \
-  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&); \
+#define DM_INSTANTIATE(R)                                                                  \
+  template void find_free_velocities(MacGrid<R>&, const Vec3d&);                           \
+  template void find_depths(MacGrid<R>&, double);                                          \
+  template void fill_matrix(MacGrid<R>&, PressureLevel<R>&);                               \
+  template std::size_t let_go_of_walls(MacGrid<R>&, std::span<const Row>, const Leaving&); \
+  template void add_pressure(MacGrid<R>&, double);                                         \
+  template void apply_pressure(MacGrid<R>&, const Leaving&);                               \
+  template void extend_velocities(MacGrid<R>&);                                            \
+  template void fill_density_source(const MacGrid<R>&, PressureLevel<R>&);                 \
   template void find_moving_velocities(MacGrid<R>&, double, double);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -44,9 +44,10 @@ struct Leaving {
   std::array<double, 6> walls;
   std::vector<double> colliders;
 };
-/// Cells beside them whose pressure pulls more become surface. Returns how many.
+/// Cells beside them whose pressure pulls more become surface. Returns how many. `rows`: those with
+/// liquid.
 template <class R>
-std::size_t let_go_of_walls(MacGrid<R>& grid, const Leaving& leaving);
+std::size_t let_go_of_walls(MacGrid<R>& grid, std::span<const CellRows::Row> rows, const Leaving& leaving);
 
 /// Changes `free` of faces that touch liquid by what the pressure as it stands does, `times` so
 /// much.

@@ -67,13 +67,17 @@ void refuse_unknown(const World<R>& world) {
 template <class R>
 void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
+  if (blocks == former) return;
   LargeVector<R> carried(blocks.size() * block_nodes, R(0));
-  std::size_t old = 0;
-  for (std::size_t b = 0; b < blocks.size(); ++b) {
-    while (old < former.size() && block_less(former[old], blocks[b])) ++old;
-    if (old < former.size() && former[old] == blocks[b])
-      std::copy_n(world.cell_pressure.data() + old * block_nodes, block_nodes, carried.data() + b * block_nodes);
-  }
+  parallel_ranges(blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
+    auto old = std::lower_bound(former.begin(), former.end(), blocks[begin], block_less);
+    for (std::size_t b = begin; b < end; ++b) {
+      while (old != former.end() && block_less(*old, blocks[b])) ++old;
+      if (old != former.end() && *old == blocks[b])
+        std::copy_n(world.cell_pressure.data() + (old - former.begin()) * block_nodes, block_nodes,
+                    carried.data() + b * block_nodes);
+    }
+  });
   world.cell_pressure.swap(carried);
 }
 
@@ -142,8 +146,10 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
   if (world.cell_pressure.size() != blocks.size() * block_nodes) return;
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
-    grid_.cells.for_block(blocks[b], [&](std::size_t n, std::size_t at) {
-      if (grid_.depth[at] > R(0)) grid_.impulse[at] = world.cell_pressure[b * block_nodes + n] / static_cast<R>(scale);
+    const R* const pressure = world.cell_pressure.data() + b * block_nodes;
+    grid_.cells.for_block_rows(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t k = 0; k < block_width; ++k)
+        grid_.impulse[at + k] = grid_.depth[at + k] > R(0) ? pressure[n + k] / static_cast<R>(scale) : R(0);
     });
   });
   grid_.wrap(grid_.impulse);
@@ -152,6 +158,7 @@ void Projection<R>::take_last_pressure(const World<R>& world, double scale) {
 template <class R>
 double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   viscosity_iterations_ = 0;
+  viscosity_.leave_out();
   const double nu = viscosity_of(world);
   if (!(nu > 0)) return 0;
   std::array<bool, 6> walls;
@@ -169,7 +176,7 @@ double Projection<R>::slow_by_viscosity(World<R>& world, double kick) {
   };
   bodies_.find_cells(world, grid_, cut_);
   press(1);
-  const ViscousSolve solved = viscosity_.solve(world, grid_, diffusion, density_of(world));
+  const ViscousSolve solved = viscosity_.solve(world, grid_, cut_, bodies_, diffusion, density_of(world));
   press(-1);
   viscosity_iterations_ = solved.iterations;
   return solved.heat * density_of(world) * world.dx * world.dx * world.dx;
@@ -188,7 +195,7 @@ void Projection<R>::solve_pressure(const World<R>& world, const Leaving& leaving
   };
   pressure_iterations_ = solve();
   // Once is enough.
-  if (let_go_of_walls(grid_, leaving) == 0) return;
+  if (let_go_of_walls(grid_, solver_.matrix().rows, leaving) == 0) return;
   parallel_for(grid_.impulse.size(), 1 << 14, [&](std::size_t c) {
     if (!(grid_.depth[c] > R(0))) grid_.impulse[c] = R(0);
   });
@@ -236,8 +243,9 @@ void Projection<R>::keep_pressure(World<R>& world, double scale, bool far) {
   parallel_for(blocks.size(), 64, [&](std::size_t b) {
     R* const pressure = world.cell_pressure.data() + b * block_nodes;
     std::fill_n(pressure, block_nodes, R(0));
-    grid_.cells.for_block(
-        blocks[b], [&](std::size_t n, std::size_t at) { pressure[n] = grid_.impulse[at] * static_cast<R>(scale); });
+    grid_.cells.for_block_rows(blocks[b], [&](std::size_t n, std::size_t at) {
+      for (std::size_t k = 0; k < block_width; ++k) pressure[n + k] = grid_.impulse[at + k] * static_cast<R>(scale);
+    });
   });
 }
 
@@ -319,17 +327,16 @@ typename Projection<R>::Moved Projection<R>::advance(World<R>& world, const Step
 }
 
 template <class R>
-void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved,
-                          StepSums& sums) const {
+void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved, StepSums& sums) {
   const ParticleSet<R>* const liquid = liquid_of(world);
   const double particle = liquid ? liquid->mass : 0;
   sums.grid.max_speed = moved.liquid.fastest;
-  sums.grid.kinetic = faces.projected * particle, sums.grid.moment = faces.moment;
+  sums.grid.kinetic = faces.energy.projected * particle, sums.grid.moment = faces.moment;
   // What solids got from the liquid is not lost.
-  sums.projected = faces.lost * particle - sums.pass.energy.viscous +
+  sums.projected = faces.energy.lost * particle - sums.pass.energy.viscous +
                    (world.keeping - s.kinetic - moved.solids.first - moved.solids.pushed);
-  sums.transfer = s.kinetic - faces.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
-  sums.swollen = excess_volume(grid_) * world.dx * world.dx * world.dx;
+  sums.transfer = s.kinetic - faces.energy.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
+  sums.swollen = excess_volume(grid_, solver_.matrix().rows) * world.dx * world.dx * world.dx;
   world.keeping = (sums.left_mass > 0 ? kinetic_of(world) : moved.liquid.kinetic) + moved.solids.last;
   sums.body += {s.gained * sums.grid.mass, cross(sums.grid.moment, s.gained),
                 -dot(world.gravity_at(world.time + s.dt) - world.gravity_at(world.time), sums.grid.moment)};
@@ -351,7 +358,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   sums.pass.energy.viscous = press(world, s);
   const ParticleSet<R>* const liquid = liquid_of(world);
   const StepScale scale{liquid ? liquid->mass : 0, s.density * world.dx * world.dx * world.dx, s.gained};
-  add_contact(world, grid_, cut_, scale, sums.grid);
+  add_contact(world, grid_, cut_, viscosity_, scale, sums.grid);
   const FaceSums faces = face_sums(world, grid_, scale);
   const Moved moved = advance(world, s, sums);
   count(world, s, faces, moved, sums);
@@ -359,7 +366,7 @@ StepSums Projection<R>::step(World<R>& world, Motion<R>& motion, double next_sam
   world.node_speed = moved.liquid.fastest;
   world.dt_before = s.dt;
   const FlowSpeeds flow = s.solids ? flow_speeds(world) : FlowSpeeds{moved.liquid.usual, moved.liquid.fastest};
-  choose_projection_dt(world, flow, frame.left, crowding(grid_));
+  choose_projection_dt(world, flow, frame.left, crowding(grid_, solver_.matrix().rows));
   advance_clock(world, s.dt, frame.done);
   world.aim_colliders();
   if (frame.done || world.time >= next_sample_time)

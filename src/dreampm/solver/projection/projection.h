@@ -65,7 +65,7 @@ class Projection final : public Solver<R> {
   /// Bodies, particles and solids to where they go.
   Moved advance(World<R>& world, const Step& s, StepSums& sums);
   /// The ledger.
-  void count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved, StepSums& sums) const;
+  void count(World<R>& world, const Step& s, const FaceSums& faces, const Moved& moved, StepSums& sums);
 
   void set_up_matrix();
   /// J that it makes of motion.

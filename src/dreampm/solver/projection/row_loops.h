@@ -30,15 +30,20 @@ struct RowLoops {
     return at_liquid && S::load(grid.open[a] + at.own) > zero();
   }
 
+  /// What faces were given.
+  static DM_FN FaceSum<S> given(const Grid& grid, int a, std::size_t own) {
+    const R* const sums = &grid.sums[a][own].momentum;
+    const auto first = S::load(sums).v, second = S::load(sums + row_cells).v;
+    return {S(__builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14)),
+            S(__builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15))};
+  }
+
   static void free_velocities(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& kick, R least) {
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t own = RowPlaces(grid.rows[n]).own;
 #pragma GCC unroll 3
       for (int a = 0; a < 3; ++a) {
-        const R* const sums = &grid.sums[a][own].momentum;
-        const auto first = S::load(sums).v, second = S::load(sums + row_cells).v;
-        const S momentum(__builtin_shufflevector(first, second, 0, 2, 4, 6, 8, 10, 12, 14)),
-            weight(__builtin_shufflevector(first, second, 1, 3, 5, 7, 9, 11, 13, 15));
+        const auto [momentum, weight] = given(grid, a, own);
         const Mask reached = weight > S(least);
         const S free = momentum / select(reached, weight, S(R(1))) + S(kick[a]);
         select(reached, free, S(unknown_velocity<R>)).store(grid.free[a] + own);
@@ -128,7 +133,26 @@ struct RowLoops {
     }
   }
 
-  static constexpr RowKernels<R> table{&free_velocities, &matrix, &apply_pressure, &extend, &move};
+  static void energies(Grid grid, std::size_t begin, std::size_t end, const Vec3<R>& gained, EnergySums& sums) {
+    for (std::size_t n = begin; n < end; ++n) {
+      const std::size_t own = RowPlaces(grid.rows[n]).own;
+#pragma GCC unroll 3
+      for (int a = 0; a < 3; ++a) {
+        const auto [momentum, weight] = given(grid, a, own);
+        const S free = S::load(grid.free[a] + own), velocity = S::load(grid.velocity[a] + own);
+        const Mask known = is_known(free) && weight > zero();
+        const S before = momentum / select(known, weight, S(R(1))), after = select(is_known(velocity), velocity, free);
+        const auto half_sum = [&](const S& of) __attribute__((always_inline)) {
+          const auto v = select(known, of, zero()).v;
+          return 0.5 * static_cast<double>(((v[0] + v[1]) + (v[2] + v[3])) + ((v[4] + v[5]) + (v[6] + v[7])));
+        };
+        sums.given += half_sum(momentum * before), sums.projected += half_sum(weight * after * after);
+        sums.lost += half_sum(weight * (before + after) * (before + S(gained[a]) - after));
+      }
+    }
+  }
+
+  static constexpr RowKernels<R> table{&free_velocities, &matrix, &apply_pressure, &extend, &move, &energies};
 };
 
 }  // namespace dreampm

@@ -21,27 +21,86 @@ void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double
   to.impulse[axis] += impulse, to.angular += cross(at, received), to.work += impulse * speed;
 }
 
+using Walls = std::array<ImpulseSum, 6>;
+
+/// What is given to walls and colliders, by their numbers.
+struct Contacts {
+  decltype(GridStats::colliders) colliders;
+  Walls walls{};
+
+  explicit Contacts(std::size_t count = 0) { colliders.resize(count); }
+  void add_to(GridStats& to) const {
+    to.colliders.resize(colliders.size());
+    for (std::size_t c = 0; c < colliders.size(); ++c) to.colliders[c] += colliders[c];
+    for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
+  }
+};
+struct JoinContacts {
+  void operator()(Contacts& all, const Contacts& from) const {
+    for (std::size_t c = 0; c < from.colliders.size(); ++c) all.colliders[c] += from.colliders[c];
+    for (std::size_t w = 0; w < 6; ++w) all.walls[w] += from.walls[w];
+  }
+};
+
+/// What viscosity did on walls, and on faces of colliders that hold the liquid.
+template <class R>
+void add_viscous_contact(const World<R>& world, const MacGrid<R>& grid, const Viscosity<R>& viscosity,
+                         const StepScale& scale, GridStats& to) {
+  if (!viscosity.acts()) return;
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  const Contacts sum = parallel_reduce(
+      rows.size(), Contacts(world.colliders.size()),
+      [&](Contacts& sums, std::size_t n) {
+        const RowPlaces at(rows[n]);
+        for (int a = 0; a < 3; ++a) {
+          const auto axis = static_cast<std::size_t>(a);
+          const int b = (a + 1) % 3, c = (a + 2) % 3;
+          for (int lane = 0; lane < row_cells; ++lane) {
+            const Vec3i face = rows[n].first + Vec3i{0, 0, lane};
+            if (!grid.within(b, face[b]) || !grid.within(c, face[c])) continue;
+            const std::size_t place = at.own + static_cast<std::size_t>(lane);
+            const double across = -static_cast<double>(viscosity.given_to(axis, place)) * scale.cell;
+            const int wall = grid.wall_at(a, face[a]);
+            if (wall >= 0) {
+              ImpulseSum& on_wall = sums.walls[static_cast<std::size_t>(wall)];
+              if (across != 0) add_along(on_wall, a, across, low_face(world, face, a), 0);
+              for (const int along : {b, c}) {
+                const int edge = 3 - a - along;
+                const double shear = static_cast<double>(viscosity.shear(static_cast<std::size_t>(edge), place));
+                Vec3d middle{};
+                middle[edge] = 0.5;
+                if (shear != 0)
+                  add_along(on_wall, along, (wall % 2 ? shear : -shear) * scale.cell,
+                            world.node_position(face) + middle * world.dx, 0);
+              }
+            } else if (across != 0 && grid.within(a, face[a]) && grid.is_held(axis, place)) {
+              const double speed = grid.solid[axis].empty() ? 0 : static_cast<double>(grid.solid[axis][place]);
+              add_along(sums.colliders[grid.owner[axis][place]], a, across, low_face(world, face, a), speed);
+            }
+          }
+        }
+      },
+      JoinContacts{});
+  sum.add_to(to);
+}
+
 }  // namespace
 
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
-                 GridStats& to) {
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Viscosity<R>& viscosity,
+                 const StepScale& scale, GridStats& to) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
-  using Walls = std::array<ImpulseSum, 6>;
   const auto liquid = [&](std::size_t place) {
-    return grid.depth[place] > R(0) ? static_cast<double>(grid.impulse[place]) : 0.0;
+    return grid.depth[place] > R(0) ? static_cast<double>(grid.impulse[place] - viscosity.pull(place)) : 0.0;
   };
   const Walls walls = parallel_reduce(
       rows.size(), Walls{},
       [&](Walls& sum, std::size_t n) {
         const RowPlaces at(rows[n]);
         for (int a = 0; a < 3; ++a) {
-          if (a < 2 && grid.wall_at(a, rows[n].first[a]) < 0) continue;
           const auto axis = static_cast<std::size_t>(a);
-          for (int lane = 0; lane < row_cells; ++lane) {
+          grid.for_on_walls(a, rows[n], [&](int lane, int wall) {
             const Vec3i face = rows[n].first + Vec3i{0, 0, lane};
-            const int wall = grid.wall_at(a, face[a]);
-            if (wall < 0) continue;
             const std::size_t place = at.own + static_cast<std::size_t>(lane),
                               below = at.low[axis] + static_cast<std::size_t>(lane);
             const R free = grid.free[axis][place], weight = grid.sums[axis][place].weight;
@@ -51,7 +110,7 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
             if (stopped != 0 || pressed != 0)
               add_along(sum[static_cast<std::size_t>(wall)], a, stopped + pressed * scale.cell,
                         low_face(world, face, a), 0);
-          }
+          });
         }
       },
       [](Walls& sum, const Walls& from) {
@@ -59,21 +118,16 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
       });
   for (std::size_t w = 0; w < 6; ++w) to.walls[w] += walls[w];
 
+  add_viscous_contact(world, grid, viscosity, scale, to);
   if (world.colliders.empty()) return;
   const auto slope = [&](std::size_t place) {
     return pressure_slope(static_cast<double>(grid.depth[place]), scale.kick);
   };
   const auto pressure = [&](std::size_t place, const Vec3d& way) { return liquid(place) + dot(slope(place), way); };
-  struct Sum {
-    decltype(GridStats::colliders) colliders;
-    Walls hidden{};  ///< of walls, by colliders
-  };
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
-  Sum none;
-  none.colliders.resize(world.colliders.size());
-  const Sum sum = parallel_reduce(
-      blocks.size(), none,
-      [&](Sum& to_block, std::size_t b) {
+  const Contacts sum = parallel_reduce(
+      blocks.size(), Contacts(world.colliders.size()),
+      [&](Contacts& to_block, std::size_t b) {
         cut.for_closed(grid, blocks[b], [&](const typename CutCells<R>::ClosedFace& face) {
           const int a = face.axis;
           Vec3i below = face.cell;
@@ -90,7 +144,7 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
             const Vec3d way = face_middle(a, high) - Vec3d{0.5, 0.5, 0.5};
             const double hidden =
                 pressure(high ? grid.cells.place_of(below) : face.place, way) * face.closed * scale.cell;
-            add_along(to_block.hidden[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
+            add_along(to_block.walls[2 * axis + (high ? 1 : 0)], a, high ? hidden : -hidden, at, 0);
           }
         });
         cut.for_filled(grid, blocks[b], [&](const typename CutCells<R>::FilledCell& cell) {
@@ -102,60 +156,41 @@ void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R
           to_collider.work += dot(impulse, world.colliders[cell.owner].velocity(at));
         });
       },
-      [](Sum& all, const Sum& from) {
-        for (std::size_t c = 0; c < from.colliders.size(); ++c) all.colliders[c] += from.colliders[c];
-        for (std::size_t w = 0; w < 6; ++w) all.hidden[w] += from.hidden[w];
-      });
-  to.colliders.resize(world.colliders.size());
-  for (std::size_t c = 0; c < sum.colliders.size(); ++c) to.colliders[c] += sum.colliders[c];
-  for (std::size_t w = 0; w < 6; ++w) to.walls[w] += sum.hidden[w];
+      JoinContacts{});
+  sum.add_to(to);
 }
 
 template <class R>
-FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScale& scale) {
+FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& scale) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
+  const GridRows<R> as_rows = grid.as_rows(rows);
+  constexpr std::size_t rows_at_once = 64;
+  const Vec3<R> gained = static_cast<Vec3<R>>(scale.kick);
   return parallel_reduce(
-      rows.size(), FaceSums{},
-      [&](FaceSums& sum, std::size_t n) {
-        const std::size_t own = RowPlaces(rows[n]).own;
-        for (std::size_t a = 0; a < 3; ++a) {
-          const R gained = static_cast<R>(scale.kick[static_cast<int>(a)]);
-          // A sum for each lane: they go side by side.
-          R given[row_cells], projected[row_cells], lost[row_cells];
+      (rows.size() + rows_at_once - 1) / rows_at_once, FaceSums{},
+      [&](FaceSums& sum, std::size_t piece) {
+        const std::size_t begin = piece * rows_at_once, end = std::min(rows.size(), begin + rows_at_once);
+        grid.kernels->energies(as_rows, begin, end, gained, sum.energy);
+        for (std::size_t n = begin; n < end; ++n) {
+          const std::size_t own = RowPlaces(rows[n]).own;
+          // Trilinear weights keep places.
+          double mass = 0, along = 0;
           for (std::size_t l = 0; l < row_cells; ++l) {
-            const auto [momentum, weight] = grid.sums[a][own + l];
-            const R free = grid.free[a][own + l], velocity = grid.velocity[a][own + l];
-            const bool known = is_known(free) && weight > R(0);
-            const R before = momentum / (known ? weight : R(1)), after = is_known(velocity) ? velocity : free;
-            given[l] = known ? momentum * before : R(0);
-            projected[l] = known ? weight * after * after : R(0);
-            lost[l] = known ? weight * (before + after) * (before + gained - after) : R(0);
+            double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
+            if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
+            if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
+            mass += m, along += m * static_cast<double>(l);
           }
-          const auto sum_of = [](const R(&of)[row_cells]) {
-            return static_cast<double>(((of[0] + of[1]) + (of[2] + of[3])) + ((of[4] + of[5]) + (of[6] + of[7])));
-          };
-          sum.given += 0.5 * sum_of(given), sum.projected += 0.5 * sum_of(projected), sum.lost += 0.5 * sum_of(lost);
+          if (mass == 0) continue;
+          sum.moment += low_face(world, rows[n].first, 0) * mass;
+          sum.moment.z += along * world.dx;
         }
-        // Trilinear weights keep places.
-        double mass = 0, along = 0;
-        for (std::size_t l = 0; l < row_cells; ++l) {
-          double m = static_cast<double>(grid.sums[0][own + l].weight) * scale.particle;
-          if (!grid.solid_volume.empty()) m += static_cast<double>(grid.solid_sums[0][own + l].weight) * scale.cell;
-          if (!grid.grain_volume.empty()) m += static_cast<double>(grid.grain_sums[0][own + l].weight) * scale.cell;
-          mass += m, along += m * static_cast<double>(l);
-        }
-        sum.moment += low_face(world, rows[n].first, 0) * mass;
-        sum.moment.z += along * world.dx;
       },
-      [](FaceSums& all, const FaceSums& from) {
-        all.given += from.given, all.projected += from.projected, all.lost += from.lost;
-        all.moment += from.moment;
-      });
+      [](FaceSums& all, const FaceSums& from) { all.energy.add(from.energy), all.moment += from.moment; });
 }
 
 template <class R>
-double excess_volume(const MacGrid<R>& grid) {
-  const std::span<const CellRows::Row> rows = grid.cells.rows();
+double excess_volume(const MacGrid<R>& grid, std::span<const CellRows::Row> rows) {
   return parallel_reduce(rows.size(), 0.0, [&](double& sum, std::size_t n) {
     const RowPlaces at(rows[n]);
     const R* const d = grid.depth.data();
@@ -171,11 +206,10 @@ double excess_volume(const MacGrid<R>& grid) {
 }
 
 template <class R>
-double crowding(const MacGrid<R>& grid) {
+double crowding(const MacGrid<R>& grid, std::span<const CellRows::Row> rows) {
   struct Sum {
     double excess = 0, all = 0;
   };
-  const std::span<const CellRows::Row> rows = grid.cells.rows();
   const Sum sum = parallel_reduce(
       rows.size(), Sum{},
       [&](Sum& to, std::size_t n) {
@@ -205,11 +239,12 @@ double kinetic_of(const World<R>& world) {
   return sum;
 }
 
-#define DM_INSTANTIATE(R)                                                                                          \
-  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const StepScale&, GridStats&); \
-  template FaceSums face_sums(const World<R>&, const MacGrid<R>&, const StepScale&);                               \
-  template double excess_volume(const MacGrid<R>&);                                                                \
-  template double crowding(const MacGrid<R>&);                                                                     \
+#define DM_INSTANTIATE(R)                                                                                \
+  template void add_contact(const World<R>&, const MacGrid<R>&, const CutCells<R>&, const Viscosity<R>&, \
+                            const StepScale&, GridStats&);                                               \
+  template FaceSums face_sums(const World<R>&, MacGrid<R>&, const StepScale&);                           \
+  template double excess_volume(const MacGrid<R>&, std::span<const CellRows::Row>);                      \
+  template double crowding(const MacGrid<R>&, std::span<const CellRows::Row>);                           \
   template double kinetic_of(const World<R>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -4,6 +4,7 @@
 #include "dreampm/backend/backend.h"
 #include "dreampm/solver/projection/cut_cells.h"
 #include "dreampm/solver/projection/mac_grid.h"
+#include "dreampm/solver/projection/viscosity.h"
 
 namespace dreampm {
 
@@ -17,32 +18,28 @@ struct StepScale {
 /// After velocities are extended: what walls and colliders gave to the liquid. Of walls it is what
 /// their faces stop, and the pressure of the cells beside them; of colliders the pressure over the
 /// parts of faces that they close, as it is at their surface. What a collider hides of a wall is
-/// the collider's.
+/// the collider's. Of both also what viscosity did.
 template <class R>
-void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const StepScale& scale,
-                 GridStats& to);
+void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Viscosity<R>& viscosity,
+                 const StepScale& scale, GridStats& to);
 
-/// Sums over the faces, each by the particles of liquid that it has.
 struct FaceSums {
-  double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
-  double projected = 0;  ///< and in the end
-  /// What was lost between: that by which a face is slower than gravity would have it, times the
-  /// mean of its speeds before and after [m^2/s^2].
-  double lost = 0;
+  EnergySums energy;
   Vec3d moment{};  ///< of all matter: mass times place [kg m]
 };
 /// After velocities are extended.
 template <class R>
-FaceSums face_sums(const World<R>& world, const MacGrid<R>& grid, const StepScale& scale);
+FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& scale);
 
 /// Cells by which liquid takes more room than at rest where it is on all sides; below 0: less.
+/// `rows`: those with liquid.
 template <class R>
-double excess_volume(const MacGrid<R>& grid);
+double excess_volume(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 
 /// Of the volume of liquid the part by which cells hold more than half too much: where thin sheets
-/// come to lie in others, faster than the density takes them apart.
+/// come to lie in others, faster than the density takes them apart. `rows`: those with liquid.
 template <class R>
-double crowding(const MacGrid<R>& grid);
+double crowding(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 
 /// J, of all particles of liquid, as the ledger counts it.
 template <class R>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/solver/projection/fill_field.h"
 
 namespace dreampm {
 namespace {
@@ -22,14 +22,6 @@ constexpr int most_viscous_iterations = 400;
 
 /// Rows over which sums are one piece.
 constexpr std::size_t rows_of_a_sum = 64;
-
-template <class R>
-void clear_field(LargeVector<R>& v, std::size_t size) {
-  resize_for_overwrite(v, size);
-  parallel_ranges(size, 1 << 14, [&](std::size_t begin, std::size_t end) {
-    std::fill(v.begin() + static_cast<std::ptrdiff_t>(begin), v.begin() + static_cast<std::ptrdiff_t>(end), R(0));
-  });
-}
 
 /// The other two axes.
 constexpr std::size_t next(std::size_t a) { return (a + 1) % 3; }
@@ -62,37 +54,58 @@ R liquid_in(const MacGrid<R>& grid, std::size_t c) {
 }  // namespace
 
 template <class R>
-R Viscosity<R>::stiffness(std::size_t a, const RowPlaces& at, std::size_t l) const {
+R Viscosity<R>::stiffness(const MacGrid<R>& grid, std::size_t a, const RowPlaces& at, std::size_t l) const {
   const std::size_t f = at.own + l;
   R sum = normal_[a][f] + normal_[a][at.low[a] + l];
   for (const std::size_t b : {next(a), after(a)}) {
     const LargeVector<R>& edges = shear_[3 - a - b];
     sum += edges[f] + edges[at.high[b] + l];
   }
+  if (slipping_.any()) sum += slipping_.stiffness(grid, a, at, l);
   return sum;
 }
 
 template <class R>
-void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
+void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusion) {
   const std::size_t size = grid.cells.size();
   for (Faces* f :
        {&mass_, &inverse_, &velocity_, &residual_, &direction_, &product_, &normal_, &shear_, &pull_, &twist_})
-    for (LargeVector<R>& v : *f) clear_field(v, size);
+    for (LargeVector<R>& v : *f) fill_field(v, size, R(0));
   const R s = static_cast<R>(diffusion);
-  const auto given = [&](std::size_t a, std::size_t f) { return !(grid.open[a][f] > R(0)) || grid.is_in_holder(a, f); };
-  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+  const bool slips = slipping_.any();
+  const auto left_of_cell = [&](std::size_t c) { return slips ? slipping_.in_cell(c) : R(1); };
+  // Faces within a collider along which the liquid slips are those of the flow before it, where one
+  // of their cells is not all within.
+  const auto goes_on = [&](const Row& row, std::size_t a, const RowPlaces& at, std::size_t l) {
+    const std::size_t f = at.own + l;
+    if (!slips || !(slipping_.closed(grid, a, f) > R(0))) return false;
+    const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
+    for (int t = 0; t < 3; ++t)
+      if (!grid.within(t, cell[t]) || (t == static_cast<int>(a) && cell[t] == grid.low[t])) return false;
+    const auto holds = [&](std::size_t c) { return slipping_.in_cell(c) > R(0) && liquid_in(grid, c) > R(0); };
+    return holds(f) || holds(at.low[a] + l);
+  };
+  for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t l = 0; l < row_cells; ++l) {
-        const std::size_t f = at.own + l;
-        if (given(a, f)) {
+        const std::size_t f = at.own + l, below = at.low[a] + l;
+        const bool closed = !(grid.open[a][f] > R(0)), inner = closed && goes_on(row, a, at, l);
+        if ((closed && !inner) || grid.is_in_holder(a, f)) {
           velocity_[a][f] = grid.solid[a].empty() ? R(0) : grid.solid[a][f];
           // What flows through its open part sticks.
-          if (grid.open[a][f] > R(0)) grid.free[a][f] = velocity_[a][f];
-        } else if (is_known(grid.free[a][f])) {
-          mass_[a][f] =
-              std::max((liquid_in(grid, f) + liquid_in(grid, at.low[a] + l)) / 2, static_cast<R>(least_face_mass));
+          if (!closed) grid.free[a][f] = velocity_[a][f];
+        } else if (is_known(grid.free[a][f]) || inner) {
+          R mass = (liquid_in(grid, f) + liquid_in(grid, below)) / 2;
+          if (slips && slipping_.at_face(a, f) < R(1)) {
+            const R own = slipping_.in_cell(f), other = slipping_.in_cell(below);
+            mass = slipping_.at_face(a, f) * (own * liquid_in(grid, f) + other * liquid_in(grid, below)) /
+                   std::max(own + other, static_cast<R>(least_face_mass));
+          }
+          mass_[a][f] = std::max(mass, static_cast<R>(least_face_mass));
           if (!grid.solid_sums[a].empty()) mass_[a][f] += grid.solid_sums[a][f].weight;
-          velocity_[a][f] = grid.free[a][f];
+          velocity_[a][f] = is_known(grid.free[a][f]) ? grid.free[a][f]
+                            : grid.solid[a].empty()   ? R(0)
+                                                      : grid.solid[a][f];
         }
       }
   });
@@ -100,10 +113,12 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
   // Between the middle of a face in a collider and that of one outside: what is not in the
   // collider.
   const auto way = [&](std::size_t a, std::size_t one, std::size_t other) {
-    if (grid.gap[a].empty()) return R(1);
+    if (grid.is_in_holder(a, one) == grid.is_in_holder(a, other)) return R(1);
     const R d = grid.gap[a][one], e = grid.gap[a][other];
-    if ((d > R(0)) == (e > R(0))) return R(1);
     return std::max(std::max(d, e) / std::abs(d - e), static_cast<R>(least_way));
+  };
+  const auto given = [&](std::size_t a, std::size_t f) {
+    return !(mass_[a][f] > R(0)) && (!(grid.open[a][f] > R(0)) || grid.is_in_holder(a, f));
   };
   const auto counts = [&](std::size_t a, std::size_t f) { return mass_[a][f] > R(0) || given(a, f); };
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -114,7 +129,7 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
       bool all = within;
       for (std::size_t a = 0; a < 3; ++a) all = all && counts(a, c) && counts(a, at.high[a] + l);
       for (std::size_t a = 0; a < 3 && all; ++a)
-        normal_[a][c] = 2 * s * std::min(liquid_in(grid, c), R(1)) / way(a, c, at.high[a] + l);
+        normal_[a][c] = 2 * s * left_of_cell(c) * std::min(liquid_in(grid, c), R(1)) / way(a, c, at.high[a] + l);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         // The edge along `axis`: faces of a beside one another along b, and the other way round.
         const std::size_t a = next(axis), b = after(axis);
@@ -124,14 +139,18 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
         const int walls[2] = {grid.wall_at(static_cast<int>(a), cell[static_cast<int>(a)]),
                               grid.wall_at(static_cast<int>(b), cell[static_cast<int>(b)])};
         if (walls[0] >= 0 && walls[1] >= 0) continue;
-        R held = 0;
+        R held = 0, left = 0;
         bool whole = true;
         for (int n = 0; n < 4; ++n) {
           R mass = mass_[along[n]][faces[n]];
           if (!grid.solid_sums[0].empty()) mass -= grid.solid_sums[along[n]][faces[n]].weight;
           held += std::clamp(mass, R(0), R(1)) / 4;
+          if (slips) left += slipping_.at_face(along[n], faces[n]) / 4;
           whole = whole && counts(along[n], faces[n]);
         }
+        // Faces are a cell wide, and know less well than the edge what is left of it.
+        if (slips && slipping_.at_edge(axis, c) != left)
+          held *= slipping_.at_edge(axis, c) / std::max(left, static_cast<R>(least_face_mass));
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
           // The faces before the wall are half a cell from it: over half of a cell, twice the
           // slope.
@@ -139,39 +158,48 @@ void Viscosity<R>::weigh(MacGrid<R>& grid, double diffusion) {
           continue;
         }
         if (!whole) continue;
-        bool slips = false;
+        bool stands_alone = false;
         R open = 0;
         for (int n = 0; n < 4; ++n) {
           if (!given(along[n], faces[n]))
             open += R(1);
           else
-            slips = slips || !grid.is_held(along[n], faces[n]);
+            stands_alone = stands_alone || !grid.is_held(along[n], faces[n]);
         }
-        if (!slips && open > R(0))
+        if (!stands_alone && open > R(0))
           shear_[axis][c] = s * held * 4 / (open * std::min(way(a, faces[0], faces[1]), way(b, faces[2], faces[3])));
       }
     }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(normal_[a]), grid.wrap(shear_[a]);
+  if (slips) slipping_.find_stiffness(world, grid, s, counts);
   // The diagonal.
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t f = at.own + l;
         if (!(mass_[a][f] > R(0))) continue;
-        inverse_[a][f] = 1 / (mass_[a][f] + stiffness(a, at, l));
+        inverse_[a][f] = 1 / (mass_[a][f] + stiffness(grid, a, at, l));
       }
   });
 }
 
 template <class R>
-void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, Faces& f) {
+void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vector<Six>& bodies, bool moving, Faces& f,
+                         std::vector<Six>& on_bodies) {
+  const bool slips = slipping_.any();
+  if (slips) {
+    slipping_.find_stress(grid, u, moving);
+    bodies_.add_flow(bodies, slipping_);
+    slipping_.end_stress(grid);
+  }
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = next(a), c = after(a);
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t p = at.own + l;
         pull_[a][p] = normal_[a][p] * (u[a][at.high[a] + l] - u[a][p]);
+        if (slips) pull_[a][p] += slipping_.swell(p);
         twist_[a][p] = shear_[a][p] * ((u[b][p] - u[b][at.low[c] + l]) + (u[c][p] - u[c][at.low[b] + l]));
       }
     }
@@ -185,17 +213,23 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, Faces& f) {
         const R sum = (pull_[a][p] - pull_[a][at.low[a] + l]) + (twist_[c][at.high[b] + l] - twist_[c][p]) +
                       (twist_[b][at.high[c] + l] - twist_[b][p]);
         f[a][p] = sum;
+        if (slips) f[a][p] += grid.open[a][p] * (slipping_.pull()[p] - slipping_.pull()[at.low[a] + l]);
       }
     }
   });
+  bodies_.gather(f, slipping_, on_bodies);
 }
 
 template <class R>
-ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffusion, double density) {
+ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, const CutCells<R>& cut,
+                                 const BodyPressure<R>& bodies, double diffusion, double density) {
   ViscousSolve out;
-  weigh(grid, diffusion);
+  acts_ = true;
+  slipping_.begin(world, grid, cut);
+  weigh(world, grid, diffusion);
   bodies_.begin(world, grid, density,
-                [&](std::size_t a, const RowPlaces& at, std::size_t l) { return stiffness(a, at, l); });
+                [&](std::size_t a, const RowPlaces& at, std::size_t l) { return stiffness(grid, a, at, l); });
+  bodies_.add_cells(bodies, slipping_);
   const std::span<const Row> rows = grid.cells.rows();
   const auto each = [&](const auto& body) {
     for_all_rows(rows, [&](const Row&, const RowPlaces& at) {
@@ -215,14 +249,9 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
     for (std::size_t b = 0; b < bodies_.size(); ++b) sum += dot(bx[b], by[b]);
     return sum;
   };
-  // Where the forces of stresses are, and minus what they do to the bodies.
-  const auto apply = [&](const Faces& u, Faces& f, std::vector<Six>& bodies) {
-    force(grid, u, f);
-    bodies_.gather(f, bodies);
-  };
   body_velocity_.assign(bodies_.size(), {}), body_direction_.assign(bodies_.size(), {});
   // From the velocities before: what is missing is the force of their stresses.
-  apply(velocity_, residual_, body_residual_);
+  force(grid, velocity_, body_velocity_, true, residual_, body_residual_);
   const double first = product(residual_, residual_, body_residual_, body_residual_);
   double square = first, rho = 0;
   while (square > viscous_tolerance * viscous_tolerance * first && out.iterations < most_viscous_iterations) {
@@ -238,7 +267,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
       for (std::size_t n = 0; n < 6; ++n) body_direction_[b][n] = body_steps_[b][n] + beta * body_direction_[b][n];
     bodies_.scatter(body_direction_, direction_);
     for (auto& d : direction_) grid.wrap(d);
-    apply(direction_, product_, body_product_);
+    force(grid, direction_, body_direction_, false, product_, body_product_);
     each([&](std::size_t a, std::size_t c) { product_[a][c] = mass_[a][c] * direction_[a][c] - product_[a][c]; });
     bodies_.weigh(body_direction_, body_steps_);
     for (std::size_t b = 0; b < bodies_.size(); ++b)
@@ -266,7 +295,12 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, double diffu
         sum += static_cast<double>(mass_[a][c] * (was - is) * (was + is) / 2);
     return sum;
   });
-  each([&](std::size_t a, std::size_t c) { grid.free[a][c] = velocity_[a][c]; });
+  bodies_.scatter_more(body_velocity_, velocity_, grid);
+  for (auto& v : velocity_) grid.wrap(v);
+  force(grid, velocity_, body_velocity_, true, product_, body_product_);
+  each([&](std::size_t a, std::size_t c) {
+    if (grid.open[a][c] > R(0)) grid.free[a][c] = velocity_[a][c];
+  });
   for (auto& f : grid.free) grid.wrap(f);
   bodies_.move(world, body_velocity_);
   return out;

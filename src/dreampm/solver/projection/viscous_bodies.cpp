@@ -1,5 +1,8 @@
 #include "dreampm/solver/projection/viscous_bodies.h"
 
+#include <algorithm>
+#include <tuple>
+
 namespace dreampm {
 
 template <class R>
@@ -10,17 +13,65 @@ void ViscousBodies<R>::lock(std::vector<Six>& vectors) const {
 }
 
 template <class R>
-void ViscousBodies<R>::gather(const Faces& f, std::vector<Six>& bodies) const {
+void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SlippingCells<R>& slipping) {
+  cells_.clear();
+  if (slipping.any() && !bodies_.empty()) {
+    for (const auto& cell : pressed.cells())
+      if (slipping.kappa(cell.place) > R(0)) cells_.push_back(cell);
+    // One a body for each cell, of all of its faces.
+    std::stable_sort(cells_.begin(), cells_.end(), [](const auto& a, const auto& b) {
+      return std::tie(a.place, a.body) < std::tie(b.place, b.body);
+    });
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < cells_.size(); ++n)
+      if (n > 0 && cells_[kept - 1].place == cells_[n].place && cells_[kept - 1].body == cells_[n].body)
+        for (std::size_t m = 0; m < 6; ++m) cells_[kept - 1].column[m] += cells_[n].column[m];
+      else
+        cells_[kept++] = cells_[n];
+    cells_.resize(kept);
+    for (const auto& cell : cells_) {
+      const auto kappa = static_cast<double>(slipping.kappa(cell.place));
+      for (std::size_t n = 0; n < 6; ++n)
+        for (std::size_t m = 0; m < 6; ++m) bodies_[cell.body].inverse[n][m] += kappa * cell.column[n] * cell.column[m];
+    }
+  }
+  for (Body& b : bodies_) {
+    for (std::size_t n = 0; n < 6; ++n)
+      if (b.locked[n])
+        for (std::size_t m = 0; m < 6; ++m) b.inverse[n][m] = b.inverse[m][n] = n == m ? 1 : 0;
+    b.inverse = inverse(b.inverse);
+  }
+}
+
+template <class R>
+void ViscousBodies<R>::gather(const Faces& f, const SlippingCells<R>& slipping, std::vector<Six>& bodies) const {
   bodies.assign(bodies_.size(), {});
   for (const Face& face : faces_)
     for (std::size_t n = 0; n < 6; ++n)
       bodies[face.body][n] += face.column[n] * static_cast<double>(f[face.axis][face.place]);
+  for (const auto& cell : cells_)
+    for (std::size_t n = 0; n < 6; ++n)
+      bodies[cell.body][n] -= cell.column[n] * static_cast<double>(slipping.pull()[cell.place]);
   lock(bodies);
 }
 
 template <class R>
 void ViscousBodies<R>::scatter(const std::vector<Six>& bodies, Faces& u) const {
   for (const Face& face : faces_) u[face.axis][face.place] = static_cast<R>(dot(face.column, bodies[face.body]));
+}
+
+template <class R>
+void ViscousBodies<R>::scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const {
+  for (const Face& face : faces_) {
+    R& at = u[face.axis][face.place];
+    at += static_cast<R>(dot(face.column, bodies[face.body]));
+    if (grid.open[face.axis][face.place] > R(0)) grid.free[face.axis][face.place] = at;
+  }
+}
+
+template <class R>
+void ViscousBodies<R>::add_flow(const std::vector<Six>& bodies, SlippingCells<R>& slipping) const {
+  for (const auto& cell : cells_) slipping.add_flow(cell.place, dot(cell.column, bodies[cell.body]));
 }
 
 template <class R>

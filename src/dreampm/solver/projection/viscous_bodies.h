@@ -1,10 +1,13 @@
 // Rigid bodies in the equation of viscosity: the liquid that sticks to one moves with it, so that
-// all of its faces have six velocities together.
+// all of its faces have six velocities together. Where it slips, cells know what flows out of them
+// as one moves.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "dreampm/solver/projection/body_motion.h"
+#include "dreampm/solver/projection/body_pressure.h"
+#include "dreampm/solver/projection/slipping_cells.h"
 
 namespace dreampm {
 
@@ -17,13 +20,19 @@ class ViscousBodies {
   /// [kg/m^3]. `stiffness(axis, face)`: of its stresses; 0 where there are none.
   template <class Stiffness>
   void begin(const World<R>& world, const MacGrid<R>& grid, double density, const Stiffness& stiffness);
+  /// And the cells along whose surfaces liquid slips; ends what `begin` began.
+  void add_cells(const BodyPressure<R>& pressed, const SlippingCells<R>& slipping);
 
   // Vectors of the solve, one Six a body.
 
-  /// From the forces on faces, those on bodies: J f.
-  void gather(const Faces& f, std::vector<Six>& bodies) const;
+  /// From the forces on faces and the stresses of cells, those on bodies: J f.
+  void gather(const Faces& f, const SlippingCells<R>& slipping, std::vector<Six>& bodies) const;
   /// Velocities of faces from those of bodies, and the faces that have them: J^T V.
   void scatter(const std::vector<Six>& bodies, Faces& u) const;
+  /// The same, added to what is there; and in `free` of open faces what they are then.
+  void scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const;
+  /// What flows out of cells as bodies move.
+  void add_flow(const std::vector<Six>& bodies, SlippingCells<R>& slipping) const;
   /// M V, M over the mass of a cell of liquid; 0 in locked components.
   void weigh(const std::vector<Six>& velocities, std::vector<Six>& out) const;
   /// By the inverse of M and of the stiffness of their faces.
@@ -44,8 +53,9 @@ class ViscousBodies {
     Six column;
   };
   void lock(std::vector<Six>& vectors) const;
-  std::vector<Body> bodies_;
+  std::vector<Body> bodies_;  ///< as in World::rigid
   std::vector<Face> faces_;
+  std::vector<typename BodyPressure<R>::Cell> cells_;
 };
 
 template <class R>
@@ -56,14 +66,13 @@ void ViscousBodies<R>::begin(const World<R>& world, const MacGrid<R>& grid, doub
   const double cell_mass = density * world.dx * world.dx * world.dx;
   std::vector<std::uint32_t> body_of(world.colliders.size(), ~std::uint32_t{0});
   for (const RigidBody& body : world.rigid) {
-    if (!grid.holding.colliders[body.collider]) continue;
-    body_of[body.collider] = static_cast<std::uint32_t>(bodies_.size());
+    if (grid.holding.colliders[body.collider]) body_of[body.collider] = static_cast<std::uint32_t>(bodies_.size());
     Body& b = bodies_.emplace_back(Body{body.collider, mass_of(body, world.colliders[body.collider]), {}, body.locked});
     for (Six& row : b.mass)
       for (double& m : row) m /= cell_mass;
     b.inverse = b.mass;
   }
-  if (bodies_.empty()) return;
+  if (bodies_.empty() || grid.gap[0].empty()) return;
   for (const CellRows::Row& row : grid.cells.rows()) {
     const RowPlaces at(row);
     for (std::size_t a = 0; a < 3; ++a)
@@ -82,12 +91,6 @@ void ViscousBodies<R>::begin(const World<R>& world, const MacGrid<R>& grid, doub
         for (std::size_t n = 0; n < 6; ++n)
           for (std::size_t m = 0; m < 6; ++m) bodies_[body].inverse[n][m] += stiff * column[n] * column[m];
       }
-  }
-  for (Body& b : bodies_) {
-    for (std::size_t n = 0; n < 6; ++n)
-      if (b.locked[n])
-        for (std::size_t m = 0; m < 6; ++m) b.inverse[n][m] = b.inverse[m][n] = n == m ? 1 : 0;
-    b.inverse = inverse(b.inverse);
   }
 }
 

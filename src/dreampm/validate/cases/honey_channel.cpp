@@ -127,8 +127,7 @@ void run_projection(Trial& t) {
       "280 Pa s, 33 times honey; 16 cells from plate to plate. Once in steps as long as frames, 1.4 H^2/(pi^2 nu), "
       "until the flow is steady; then in steps of a hundredth of those, through its start. What gravity gives in a "
       "long "
-      "step is more than the flow is fast, and its heat counts from there: it is judged in short ones. The drag of "
-      "plates is not in the projection's ledger.");
+      "step is more than the flow is fast, and its heat counts from there: it is judged in short ones.");
   Plot plot{"honey-channel-projection",
             "Start of a viscous flow between plates, by the projection",
             "place between the plates",
@@ -142,14 +141,22 @@ void run_projection(Trial& t) {
   const Flow small = flow_of(t, by(part), &plot), large = flow_of(t, by(frame), &plot, steady);
   const char *const end = "steps of 5 ms: error of the steady profile, of the fastest speed",
                     *const start = "steps of 0.05 ms: error of the profile, of the fastest speed",
-                    *const warmth = "steps of 0.05 ms: heat of viscosity over the exact, minus 1";
+                    *const warmth = "steps of 0.05 ms: heat of viscosity over the exact, minus 1",
+                    *const pull = "steps of 5 ms: drag of the plates over the exact, minus 1",
+                    *const first_pull = "steps of 0.05 ms: drag of the plates over the exact, minus 1";
   t.at_most(end, large.error, 0.01, "%");
+  t.at_most(pull, std::abs(large.drag - 1), 0.01, "%");
   t.report("steps of 5 ms", static_cast<double>(large.steps));
   t.at_most(start, small.error, 0.01, "%");
   t.at_most(warmth, std::abs(small.heat - 1), 0.02, "%");
+  t.at_most(first_pull, std::abs(small.drag - 1), 0.02, "%");
   t.report("steps of 0.05 ms", static_cast<double>(small.steps));
   const std::vector<std::string> thin{"materials.liquid.viscosity=271.6"};
   t.control("3 % less viscosity", end, flow_of(t, by(frame, thin), nullptr, steady).error);
+  const Flow along =
+      flow_of(t, by(frame, {"space.walls.floor.type=slip", "space.walls.ceiling.type=slip"}), nullptr, steady);
+  t.control("plates that it slips along", pull, std::abs(along.drag - 1));
+  t.control("plates that it slips along", first_pull, std::abs(along.drag - 1));
   const Flow fast = flow_of(t, by(part, thin));
   t.control("3 % less viscosity", start, fast.error), t.control("3 % less viscosity", warmth, std::abs(fast.heat - 1));
   t.plot(std::move(plot));

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/geometry/level_set.h"
+#include "dreampm/level_set/level_set.h"
 #include "dreampm/validate/measure/particles.h"
 #include "dreampm/validate/revolve.h"
 #include "dreampm/validate/validation_run.h"

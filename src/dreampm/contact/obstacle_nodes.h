@@ -1,0 +1,50 @@
+// What colliders are to the nodes of one block: how far, and how much of each kernel they take.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/contact/block_distances.h"
+#include "dreampm/contact/body_kernel.h"
+#include "dreampm/contact/collider_view.h"
+
+namespace dreampm {
+
+struct ObstacleNode {
+  std::uint8_t node;       ///< index within the block
+  bool inside;             ///< the node's distance is <= 0,
+  bool deep;               ///< and even beyond `deep_nodes`
+  std::uint16_t collider;  ///< index within World::colliders
+  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
+  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
+  Vec3d normal;            ///< outward, of nodes inside
+  Vec3d velocity{};        ///< of the collider there [m/s], of nodes inside one that moves
+};
+
+/// The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's
+/// kernel lies inside a plane obstacle at signed distance d [cells].
+double kernel_inside(double d);
+
+/// Cubes along each side of a kernel's support over which its part inside of colliders is added up.
+/// Those that move are looked at in every step: for them it has to be quick.
+enum class Cubes { fixed = 6, moving = 3 };
+
+/// Adds the nodes of the block whose kernels reach into that collider.
+void add_nodes(ExposedNodes& exposed, std::uint16_t collider, std::vector<ObstacleNode>& nodes);
+
+/// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces
+/// that meet at a right angle the second takes its part of what the first one left; one that
+/// continues the first takes nothing more. So they are as parts of `blocked`; at edges, and in
+/// layers on a wall of the box, those of `taken` are scaled to what the solid as a whole takes.
+void share_kernels(const ColliderView& view, Cubes cubes, std::vector<ObstacleNode>& nodes);
+
+/// Adds the nodes of a rigid body to `nodes`, those of the other colliders with their shares;
+/// `own`: the distances from its faces. Solids that do not overlap take their parts of a kernel
+/// side by side.
+void add_body_nodes(ExposedNodes& exposed, std::uint16_t body, const BlockDistances& own, const BodyKernel& kernel,
+                    std::vector<ObstacleNode>& nodes);
+
+/// The order of a block's nodes: by index, those of one by collider.
+bool in_order(const ObstacleNode& a, const ObstacleNode& b);
+
+}  // namespace dreampm

@@ -1,0 +1,96 @@
+#include "dreampm/pictures/draw.h"
+
+#include <algorithm>
+#include <list>
+
+#include "dreampm/math/srgb.h"
+
+namespace dreampm {
+namespace {
+
+/// Liquid that ends this near to glass touches it, in spacings: particles rest up to half a spacing
+/// before a wall, and their surface ends about as far before them as behind.
+constexpr double wetting_spacings = 1.5;
+
+const scene::Look& look_of(const SceneDescription& scene, int material) {
+  return scene.render.looks.at(scene.materials[static_cast<std::size_t>(material)].name);
+}
+
+}  // namespace
+
+std::vector<int> meshed_materials(const SceneDescription& scene) {
+  std::vector<int> list;
+  for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m)
+    if (look_of(scene, m).type != scene::LookType::spheres) list.push_back(m);
+  return list;
+}
+
+MaterialParticles particles_of(const SceneDescription& scene, int material, const ParticleFrame& frame) {
+  const std::string& name = scene.materials[static_cast<std::size_t>(material)].name;
+  MaterialParticles out;
+  for (std::size_t i = 0; i < frame.size(); ++i)
+    if (frame.material_names.at(frame.material[i]) == name) {
+      out.position.push_back(frame.position[i]);
+      if (!frame.velocity.empty()) out.velocity.push_back(frame.velocity[i]);
+    }
+  return out;
+}
+
+SurfaceInput surface_input(const SceneDescription& scene, const MaterialParticles& particles, const Vec3d& shift) {
+  SurfaceInput input;
+  input.positions = particles.position;
+  input.velocities = particles.velocity;
+  input.spacing = static_cast<float>(scene.space.spacing);
+  input.walls = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.max - shift)};
+  for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != WallType::open;
+  return input;
+}
+
+SurfaceSettings surface_settings(const SceneDescription& scene) {
+  const auto spacing = static_cast<float>(scene.space.spacing);
+  SurfaceSettings settings;
+  // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
+  settings.voxel = std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), spacing / 8, 2 * spacing);
+  settings.smooth = scene.surface.smooth;
+  settings.keep_field = scene.surface.format == scene::SurfaceFormat::vdb;
+  return settings;
+}
+
+Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
+                 const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
+  RenderScene out = render_scene(scene, shift);
+  out.wetting = static_cast<float>(wetting_spacings * scene.space.spacing);
+  out.objects = colliders.objects;
+  // What the picture borrows.
+  std::list<TriMesh> meshes;
+  std::list<std::vector<Vec3f>> arrays;
+  for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) {
+    const scene::Look& look = look_of(scene, m);
+    const bool spheres = look.type == scene::LookType::spheres,
+               colored = look.type != scene::LookType::dielectric && many_colored(scene, m);
+    std::vector<Vec3f>&positions = arrays.emplace_back(), &colors = arrays.emplace_back();
+    if (spheres || colored) {
+      const ParticleFrame& frame = content.particles();
+      positions = particles_of(scene, m, frame).position;
+      if (colored) colors = particle_colors(scene, m, frame, bodies);
+    }
+    const auto cut = cut_of(scene, scene.materials[static_cast<std::size_t>(m)].name, shift);
+    if (spheres) {
+      if (cut) cut_points(positions, colors, *cut);
+      const float radius = static_cast<float>(look.radius * scene.space.spacing);
+      if (!positions.empty())
+        out.objects.push_back({RenderSpheres{positions, radius, colors}, material_look(scene, m), {}});
+      continue;
+    }
+    TriMesh& mesh = meshes.emplace_back(content.mesh(m));
+    if (mesh.triangles.empty()) continue;
+    if (colored)
+      colors =
+          vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
+    if (cut) cut_mesh(mesh, colors, *cut);
+    out.objects.push_back({&mesh, material_look(scene, m), colors});
+  }
+  return render(out, settings);
+}
+
+}  // namespace dreampm

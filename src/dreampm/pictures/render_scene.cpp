@@ -1,0 +1,182 @@
+#include "dreampm/pictures/render_scene.h"
+
+#include <algorithm>
+
+#include "dreampm/base/parallel.h"
+#include "dreampm/math/srgb.h"
+#include "dreampm/render/texture_frame.h"
+#include "dreampm/setup/collider_mesh.h"
+#include "dreampm/setup/colliders.h"
+#include "dreampm/surface/cells.h"
+
+namespace dreampm {
+namespace {
+
+/// Glass displaces what a liquid's surface reaches into.
+constexpr int collider_priority = 1;
+
+/// The color that all bodies of the material have, if they agree.
+std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
+  std::optional<Vec3d> color;
+  for (const scene::Body& b : scene.bodies) {
+    if (b.material != material) continue;
+    if (!b.color || (color && !(*color == *b.color))) return std::nullopt;
+    color = b.color;
+  }
+  return color;
+}
+
+/// Whether it is a block of glass that lies across the whole room and beyond it, as a wall that a
+/// hand drags does: what is beyond the panes is not drawn.
+bool ends_at_the_panes(const scene::Collider& c, const scene::Look& look, const Box3d& room) {
+  const auto* const box = std::get_if<BoxShape>(&c.shape.form);
+  if (!box || !c.shape.center || c.shape.rotate_angle != 0 || look.type != scene::LookType::dielectric) return false;
+  int axes = 0;
+  for (int a = 0; a < 3; ++a)
+    if (const double middle = (*c.shape.center)[a], half = 0.5 * box->size[a];
+        middle - half < room.min[a] && middle + half > room.max[a])
+      ++axes;
+  return axes >= 2;
+}
+
+Vec3f clamped(Vec3f v, const Box3d& room) {
+  for (int a = 0; a < 3; ++a) v[a] = std::clamp(v[a], static_cast<float>(room.min[a]), static_cast<float>(room.max[a]));
+  return v;
+}
+
+}  // namespace
+
+bool many_colored(const SceneDescription& scene, int material) {
+  return !body_color(scene, material) && std::any_of(scene.bodies.begin(), scene.bodies.end(),
+                                                     [&](const auto& b) { return b.material == material && b.color; });
+}
+
+BodyColors::BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies) {
+  for (const BodyRecord& r : bodies)
+    for (const scene::Body& b : scene.bodies)
+      if (b.name == r.name && b.color) ranges_.push_back({r.first_id, r.first_id + r.count, linear_color(*b.color)});
+}
+
+const Vec3f* BodyColors::of(std::int32_t particle) const {
+  const auto id = static_cast<std::uint64_t>(particle);
+  const auto range =
+      std::upper_bound(ranges_.begin(), ranges_.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
+  return range != ranges_.end() && id >= range->first ? &range->color : nullptr;
+}
+
+std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                   const std::vector<BodyRecord>& bodies) {
+  const std::string& name = scene.materials[std::size_t(material)].name;
+  const Vec3f plain = linear_color(scene.render.looks.at(name).color);
+  const BodyColors of_bodies(scene, bodies);
+  std::vector<Vec3f> colors;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    if (frame.material_names.at(frame.material[i]) != name) continue;
+    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    colors.push_back(own ? *own : plain);
+  }
+  return colors;
+}
+
+std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
+                                 float spacing, const Vec3f& otherwise) {
+  const float radius = 2 * spacing;
+  const surface::CellGrid cells(positions, radius);
+  std::vector<Vec3f> out(mesh.vertices.size(), otherwise);
+  parallel_for(out.size(), 512, [&](std::size_t v) {
+    const Vec3f x = mesh.vertices[v], reach{radius, radius, radius};
+    Vec3f sum{};
+    float weight = 0;
+    surface::for_cells(cells, x - reach, x + reach, [&](std::size_t c) {
+      for (std::uint32_t i = cells.first[c]; i < cells.first[c + 1]; ++i) {
+        const float t = 1 - length2(positions[cells.order[i]] - x) / (radius * radius);
+        if (t > 0) sum += colors[cells.order[i]] * (t * t * t * t), weight += t * t * t * t;
+      }
+    });
+    if (weight > 0) out[v] = sum / weight;
+  });
+  return out;
+}
+
+ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift) : shift_(shift) {
+  const Box3d room{scene.space.min, scene.space.max};
+  const Meshes files(Meshes::Say::keep);
+  for (const scene::Collider& c : scene.colliders) {
+    const scene::Look& look = scene.render.looks.at(c.name);
+    TriMesh mesh;
+    if (!c.pin)
+      mesh = collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness,
+                           look.type == scene::LookType::dielectric);
+    std::optional<Vec3f> grain;
+    if (look.grain) grain = static_cast<Vec3f>(*look.grain);
+    const TextureFrame frame = texture_frame(mesh, grain);
+    models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
+                       motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+    if (!ends_at_the_panes(c, look, room)) continue;
+    models_.back().within = Box3d{room.min - shift, room.max - shift};
+  }
+}
+
+std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift) {
+  const auto& cut = scene.render.cut;
+  if (!cut || std::find(cut->of.begin(), cut->of.end(), name) == cut->of.end()) return std::nullopt;
+  return CutPlane{cut->point - shift, normalized(cut->normal)};
+}
+
+TriMesh ColliderModels::mesh(std::size_t collider, double time) const {
+  const Model& m = models_[collider];
+  return m.sequence ? m.sequence->mesh(time, shift_) : m.mesh;
+}
+
+TriMesh ColliderModels::mesh_within(std::size_t collider, const Pose& pose) const {
+  TriMesh mesh = this->mesh(collider);
+  if (!models_[collider].within) return mesh;
+  for (Vec3f& v : mesh.vertices) {
+    const Vec3f in = clamped(placed(pose, v), *models_[collider].within);
+    v = static_cast<Vec3f>(pose.inverse(static_cast<Vec3d>(in) + shift_) - shift_);
+  }
+  return mesh;
+}
+
+std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
+  std::vector<Pose> poses;
+  for (const Model& m : models_) {
+    const auto found = frame.poses.find(m.name);
+    poses.push_back(found != frame.poses.end() ? found->second : m.path ? m.path->pose_at(frame.time) : Pose{});
+  }
+  return poses;
+}
+
+DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) const {
+  DrawnColliders out;
+  for (std::size_t c = 0; c < models_.size(); ++c) {
+    TriMesh& mesh = out.meshes.emplace_back(this->mesh(c, time));
+    if (mesh.triangles.empty()) continue;
+    TextureFrame frame = models_[c].frame;
+    if (const Pose& pose = poses[c]; !(pose == Pose{})) {
+      const auto place = [&](const Vec3f& p) { return placed(pose, p); };
+      const auto turn = [&](const Vec3f& d) { return static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(d))); };
+      for (Vec3f& v : mesh.vertices) v = place(v);
+      for (Vec3f& n : mesh.normals) n = turn(n);
+      frame.middle = place(frame.middle);
+      frame.x = turn(frame.x), frame.y = turn(frame.y), frame.z = turn(frame.z);
+    }
+    if (models_[c].within)
+      for (Vec3f& v : mesh.vertices) v = clamped(v, *models_[c].within);
+    if (models_[c].cut) {
+      std::vector<Vec3f> no_colors;
+      cut_mesh(mesh, no_colors, *models_[c].cut);
+      if (mesh.triangles.empty()) continue;
+    }
+    out.objects.push_back({&mesh, models_[c].look, {}, frame, collider_priority});
+  }
+  return out;
+}
+
+RenderLook material_look(const SceneDescription& scene, int material) {
+  scene::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
+  look.color = body_color(scene, material).value_or(look.color);
+  return render_look(look);
+}
+
+}  // namespace dreampm

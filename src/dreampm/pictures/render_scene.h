@@ -1,0 +1,95 @@
+// The looks of a scene's matter and colliders: what render/from_scene.h knows, with the colors that
+// bodies bring.
+#pragma once
+#include <list>
+#include <memory>
+#include <span>
+
+#include "dreampm/io/ply.h"
+#include "dreampm/io/run_record.h"
+#include "dreampm/level_set/mesh_sequence.h"
+#include "dreampm/math/motion_path.h"
+#include "dreampm/render/cut.h"
+#include "dreampm/render/from_scene.h"
+
+namespace dreampm {
+
+/// The look of a material. One whose bodies all have one color takes that.
+RenderLook material_look(const SceneDescription& scene, int material);
+
+/// Have the material's bodies different colors? (Those without one have the look's.)
+bool many_colored(const SceneDescription& scene, int material);
+
+/// The colors that bodies have of their own, linear. `bodies` as in run.json.
+class BodyColors {
+ public:
+  BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies);
+  /// That of the particle's body; null for one without, and for matter of no body.
+  const Vec3f* of(std::int32_t particle) const;
+
+ private:
+  struct Range {
+    std::uint64_t first, end;
+    Vec3f color;
+  };
+  std::vector<Range> ranges_;  ///< ascending ids: bodies are numbered one after the other
+};
+
+/// Linear color of each particle of the material, in the frame's order, from the body that it came
+/// from. `bodies` as in run.json.
+std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+                                   const std::vector<BodyRecord>& bodies);
+
+/// Color of each vertex from the particles around it, the nearer the more; `otherwise` where none
+/// is near.
+std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
+                                 float spacing, const Vec3f& otherwise);
+
+/// The plane of the scene's cut, if the thing of that name is cut.
+std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift);
+
+/// Colliders of a picture.
+struct DrawnColliders {
+  std::list<TriMesh> meshes;
+  std::vector<RenderObject> objects;
+};
+
+/// Meshes of a scene's colliders with their looks, made once. `shift`: as render_scene.
+class ColliderModels {
+ public:
+  ColliderModels(const SceneDescription& scene, const Vec3d& shift);
+  std::size_t size() const { return models_.size(); }
+  const std::string& name(std::size_t collider) const { return models_[collider].name; }
+  const RenderLook& look(std::size_t collider) const { return models_[collider].look; }
+  /// Whether its mesh is another at other times.
+  bool deforms(std::size_t collider) const { return models_[collider].sequence != nullptr; }
+  /// Its mesh, uncut, as the scene gives it; at a time [s] if it deforms. Empty of a pin.
+  TriMesh mesh(std::size_t collider, double time = 0) const;
+  /// The same, without what lies beyond the box where it stands, if pictures do not show that: a
+  /// wall that a hand dragged ends at the box.
+  TriMesh mesh_within(std::size_t collider, const Pose& pose) const;
+  /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
+  std::vector<Pose> poses_in(const FrameRecord& frame) const;
+  /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it.
+  DrawnColliders at(std::span<const Pose> poses, double time) const;
+
+ private:
+  struct Model {
+    std::string name;
+    TriMesh mesh;
+    RenderLook look;
+    TextureFrame frame;  ///< at rest
+    std::optional<CutPlane> cut;
+    std::shared_ptr<const MotionPath> path;
+    std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
+    std::optional<Box3d> within{};                 ///< m, from the shift: what is beyond is not drawn
+  };
+  Vec3f placed(const Pose& pose, const Vec3f& p) const {
+    return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);
+  }
+
+  std::vector<Model> models_;
+  Vec3d shift_;
+};
+
+}  // namespace dreampm

@@ -1,0 +1,45 @@
+// Colliders of a scene as regions, and whether matter starts inside of them.
+#pragma once
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dreampm/level_set/level_set.h"
+#include "dreampm/level_set/mesh_sequence.h"
+#include "dreampm/scene/description.h"
+#include "dreampm/solver/solids_in_the_way.h"
+#include "dreampm/state/world.h"
+
+namespace dreampm {
+
+/// What a collider takes of space: the inside of its shape, or the shell about its surface if it
+/// has a thickness.
+std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
+                                              const Meshes& meshes);
+
+/// Of a collider that is a sequence of meshes; else null.
+std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space);
+
+/// The motion that the scene gives a shape; null of one that stands. Without `about` the middle of
+/// its bounds is what it turns about: `spacing` [m] is for meshes.
+std::shared_ptr<const MotionPath> motion_path(const std::optional<scene::Motion>& given, const Shape& shape,
+                                              double spacing, const Meshes& meshes);
+
+/// How much of a body's matter lies inside of a collider.
+struct Overlap {
+  std::size_t particles = 0;
+  double depth = 0;  ///< m, of the deepest particle
+  void operator+=(const Overlap& other);
+};
+/// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic
+/// axes both the collider and the points are where they are repeated, too.
+template <class R>
+Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c);
+/// Of each point whether it lies inside of one of these colliders of the world.
+template <class R>
+std::vector<bool> are_inside(const std::vector<Vec3d>& points, const World<R>& world,
+                             const std::vector<std::size_t>& colliders);
+
+}  // namespace dreampm

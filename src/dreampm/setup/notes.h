@@ -1,0 +1,14 @@
+// What a scene says that has no effect, or another one than its author may think.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "dreampm/level_set/level_set.h"
+#include "dreampm/scene/description.h"
+
+namespace dreampm {
+
+/// A line each.
+std::vector<std::string> notes_on(const scene::SceneDescription& scene, const std::string& file, const Meshes& meshes);
+
+}  // namespace dreampm

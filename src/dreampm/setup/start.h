@@ -1,0 +1,46 @@
+// What a scene's `start` names: a moment of a simulation, from which another one goes on.
+#pragma once
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dreampm/run/engine.h"
+#include "dreampm/setup/assemble.h"
+
+namespace dreampm {
+
+/// The format of the archive of a moment that a scene may start from.
+inline constexpr const char* start_format = "dreampm-start";
+
+/// What a file of a moment says, without its particles.
+struct StartInfo {
+  int frame = 1;
+  double time = 0;                                             ///< s
+  std::vector<std::pair<std::string, std::size_t>> particles;  ///< of each material, by its name
+  Vec3d momentum{};                                            ///< kg m/s
+  ExpectedSpeed expected;                                      ///< that liquids were made stiff for
+
+  /// Of a material; 0 where it is not there.
+  std::size_t count(std::string_view material) const;
+};
+/// Throws InputError for what is no such file.
+StartInfo start_info(const std::filesystem::path& file);
+
+/// The frame that a run of the scene begins with: 1 without a start. Throws as start_info.
+int first_frame(const SceneDescription& scene);
+
+/// Writes what decides the future. `world` and `motion` must be current in memory
+/// (Engine::download), and the grid formed.
+template <class R>
+void write_start(const std::filesystem::path& file, const World<R>& world, const Motion<R>& motion,
+                 const ExpectedSpeed& expected);
+
+/// Brings the first matter into an engine of the empty world of `start`: that of the bodies, or
+/// that of the scene's start. Where the scene is as it was when the start was written, the future
+/// is the same to the bit; else the grid is formed anew, of the same particles. Throws InputError
+/// for a start of another spacing, space or precision, or without one of the scene's materials.
+template <class R>
+void begin(Engine<R>& engine, const InitialState& start, const SceneDescription& scene);
+
+}  // namespace dreampm
