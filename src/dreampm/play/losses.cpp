@@ -34,15 +34,12 @@ void Playground::Impl::see_losses() {
   const scene::Space& space = simulation->scene().description().space;
   if (std::none_of(space.walls.begin(), space.walls.end(), [](const auto& w) { return w.type == WallType::open; }))
     return;
-  const Box3d box{space.min, space.max};
   std::array<std::uint64_t, 6> out{};
   for (const std::string& material : simulation->scene().materials())
     simulation->visit(material, {}, [&](const ParticleBatch& some) {
-      for (const Vec3d& x : some.position) {
-        if (box.contains(x)) continue;
+      for (const Vec3d& x : some.position)
         for (int a = 0; a < 3; ++a)
-          out[std::size_t(2 * a)] += x[a]<box.min[a], out[std::size_t(2 * a + 1)] += x[a]> box.max[a];
-      }
+          out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.max[a];
     });
   const std::uint64_t gone = simulation->counts().left;
   const std::uint64_t more = gone - std::min(gone, losses.seen);
