@@ -59,6 +59,7 @@ struct ColliderState {
   Vec3d force{};
   std::string_view type = "separate";  ///< what its surface does to matter: separate, slip or stick
   double friction = 0;                 ///< Coulomb's coefficient
+  double restitution = 0;              ///< of impacts, 0 to 1, of a rigid body; 0 of other colliders
   double slack = 0;                    ///< cells, as in NewCollider
   bool is_rigid = false;               ///< whether it is a rigid body
   bool moves = false;                  ///< whether it may stand elsewhere than in the scene

@@ -1,9 +1,11 @@
-// Questions about places: what a ray meets, which colliders are near.
+// Questions about places: what a ray meets, which colliders are near, what matter touches them.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dreampm/vec.h"
@@ -37,5 +39,18 @@ struct NearCollider {
 /// Colliders and rigid bodies whose surface is nearer to a point [m] than `distance` [m], or that
 /// hold it, in the order of the scene.
 std::vector<NearCollider> colliders_near(const Simulation& simulation, const Vec3d& point, double distance);
+
+/// Matter at the surface of a collider or rigid body.
+struct Contact {
+  std::string material;
+  std::size_t particles = 0;
+  Vec3d middle{};  ///< m, of these particles
+};
+
+/// The particles that are nearer to the surface of a collider or rigid body than `distance` [m], or
+/// inside of it, by material; absent: than a spacing. What they press it with is its
+/// ColliderState::force. Looks at all particles. Throws InputError for a name that is not there.
+std::vector<Contact> contacts(const Simulation& simulation, std::string_view collider,
+                              std::optional<double> distance = {});
 
 }  // namespace dreampm

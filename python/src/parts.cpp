@@ -240,6 +240,9 @@ void bind_colliders(nb::module_& m) {
       .def_prop_ro(
           "friction", [](const ColliderPart& part) { return state_of(part).friction; }, "Coulomb's coefficient.")
       .def_prop_ro(
+          "restitution", [](const ColliderPart& part) { return state_of(part).restitution; },
+          "Of impacts, 0 to 1, of a rigid body; 0 of others.")
+      .def_prop_ro(
           "is_rigid", [](const ColliderPart& part) { return state_of(part).is_rigid; }, "Whether it is a rigid body.")
       .def_prop_ro(
           "moves", [](const ColliderPart& part) { return state_of(part).moves; },

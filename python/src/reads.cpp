@@ -113,6 +113,12 @@ void bind_shapes(nb::module_& m) {
       .def_ro("distance", &NearCollider::distance, "From its surface [m]; negative inside.")
       .def_ro("is_rigid", &NearCollider::is_rigid, "Whether it is a rigid body.");
   show(near, "NearCollider", {"name", "distance", "is_rigid"});
+
+  nb::class_<Contact> contact(m, "Contact", "Matter at the surface of a collider or rigid body.");
+  contact.def_ro("material", &Contact::material)
+      .def_ro("particles", &Contact::particles, "How many.")
+      .def_ro("middle", &Contact::middle, "Of these particles [m].");
+  show(contact, "Contact", {"material", "particles", "middle"});
 }
 
 /// float32 (n,) or (n, 3, 3)
@@ -251,6 +257,14 @@ void bind_reads(nb::module_& m) {
       },
       nb::arg("simulation"), nb::arg("point"), nb::arg("distance"),
       "Colliders and rigid bodies whose surface is nearer to a point [m] than `distance` [m], or that hold it.");
+  m.def(
+      "contacts",
+      [](Held& held, const std::string& collider, std::optional<double> distance) {
+        return held.call([&](Simulation& s) { return contacts(s, collider, distance); });
+      },
+      nb::arg("simulation"), nb::arg("collider"), nb::arg("distance") = nb::none(),
+      "The particles that are nearer to the surface of a collider or rigid body than `distance` [m], or inside of it,\n"
+      "by material; None: than a spacing.");
   m.def(
       "refused_parts", [](const Scene& scene) { return refused_parts(scene); }, nb::arg("scene"),
       "A line for each part of a scene that its `time.solver` cannot do, with its place and what would be right.");

@@ -123,6 +123,9 @@ def test_shapes_and_rays(tank):
     assert dm.cast_ray(sim, (0.39, 0.35, 0.1), (-1, 0, 0)) is None
     [near] = dm.colliders_near(sim, (0.26, 0.1, 0.1), 0.03)
     assert near.name == "gate" and near.distance == pytest.approx(0.02)
+    assert dm.contacts(sim, "gate", 0.01) == []
+    [wet] = dm.contacts(sim, "gate", 0.04)
+    assert wet.material == "water" and wet.particles > 50 and 0.17 < wet.middle[0] < 0.22
     with pytest.raises(TypeError, match="direction: 1 is no vector"):
         dm.cast_ray(sim, (0, 0, 0), 1)
 

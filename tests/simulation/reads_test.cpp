@@ -174,7 +174,10 @@ TEST_P(Reads, NamesOfWhatThereIsAndOfWhatIsAdded) {
   EXPECT_THAT(names.sinks, ElementsAre("drain"));
   EXPECT_THAT(names.probes, ElementsAre("level"));
   simulation->add_collider({"shelf", SceneShape::box({0, 0.36, 0}, {0.05, 0.38, 0.2})});
-  simulation->add_rigid({.name = "ball", .shape = SceneShape::sphere({0.15, 0.25, 0.1}, 0.03)});
+  simulation->add_rigid(
+      {.name = "ball", .shape = SceneShape::sphere({0.15, 0.25, 0.1}, 0.03), .friction = 0.7, .restitution = 0.3});
+  EXPECT_EQ(simulation->collider("ball").friction, 0.7);
+  EXPECT_EQ(simulation->collider("ball").restitution, 0.3);
   simulation->add({"drop", "water", SceneShape::sphere({0.1, 0.2, 0.1}, 0.03)});
   names = simulation->names();
   EXPECT_THAT(names.colliders, testing::UnorderedElementsAre("plate", "shelf", "crate", "ball"));
@@ -202,6 +205,8 @@ TEST_P(Reads, CountsAreThoseOfTheTotals) {
   EXPECT_GT(counts.removed, 0u);
   EXPECT_GT(counts.left, 0u);
   EXPECT_GT(counts.drained, 0u);
+  EXPECT_EQ(counts.particles + counts.removed + counts.left + counts.drained, simulation->next_id())
+      << "each that ever came is there, or went one way";
   EXPECT_EQ(std::tie(counts.entered, counts.removed, counts.left, counts.drained),
             std::tie(totals.entered, totals.removed, totals.left, totals.drained));
 }
@@ -390,6 +395,23 @@ TEST_P(Reads, WhatARayMeetsFirst) {
   EXPECT_FALSE(cast_ray(*simulation, {0.2, 2, 0.1}, {0, 1, 0}));
   EXPECT_EQ(cast_ray(*simulation, {0.25, 0.12, 0.1}, down)->distance, 0);
   EXPECT_THROW(cast_ray(*simulation, {0, 0, 0}, {0, 0, 0}), InputError);
+}
+
+// The water within a spacing of the crate's sides and bottom, and none at the plate above.
+TEST_P(Reads, WhatMatterTouches) {
+  EXPECT_THAT(contacts(*simulation, "plate"), IsEmpty());
+  const std::vector<Contact> wet = contacts(*simulation, "crate");
+  ASSERT_EQ(wet.size(), 1u);
+  EXPECT_EQ(wet[0].material, "water");
+  // A layer of a spacing around the lower half: 0.08 x 0.08 below and 4 x 0.08 x 0.04 beside it.
+  const double expected = (0.08 * 0.08 + 4 * 0.08 * 0.04) / (0.02 * 0.02);
+  EXPECT_NEAR(static_cast<double>(wet[0].particles), expected, 0.5 * expected);
+  EXPECT_LT(wet[0].middle.y, 0.12);
+  EXPECT_NEAR(wet[0].middle.x, 0.25, 0.01);
+  std::size_t all = 0;
+  for (const Contact& c : contacts(*simulation, "crate", 10)) all += c.particles;
+  EXPECT_EQ(all, simulation->particle_count());
+  EXPECT_THROW(contacts(*simulation, "crat"), InputError);
 }
 
 TEST(ReadsOfMatter, GravityByKeysIsThatOfNow) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "dreampm/math/rng.h"
-#include "dreampm/pictures/frames.h"
 #include "dreampm/play/cell_means.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dreampm/base/error.h"
 #include "dreampm/simulation.h"
@@ -85,6 +86,25 @@ std::vector<NearCollider> colliders_near(const Simulation& simulation, const Vec
   for (const ColliderShape& shape : simulation.collider_shapes())
     if (const double d = shape.distance(point); d < distance) near.push_back({shape.name(), d, shape.is_rigid()});
   return near;
+}
+
+std::vector<Contact> contacts(const Simulation& simulation, std::string_view collider, std::optional<double> distance) {
+  const ColliderShape shape = simulation.collider_shape(collider);
+  const double near = distance.value_or(simulation.scene().spacing());
+  const Vec3d around{near, near, near};
+  const Box3d bounds = shape.bounds(), reach{bounds.min - around, bounds.max + around};
+  std::vector<Contact> all;
+  for (const std::string& material : simulation.scene().materials()) {
+    Contact contact{material};
+    simulation.visit(material, {}, [&](const ParticleBatch& some) {
+      for (const Vec3d& x : some.position)
+        if (reach.contains(x) && shape.distance(x) < near) ++contact.particles, contact.middle += x;
+    });
+    if (contact.particles == 0) continue;
+    contact.middle = contact.middle / static_cast<double>(contact.particles);
+    all.push_back(std::move(contact));
+  }
+  return all;
 }
 
 }  // namespace dreampm

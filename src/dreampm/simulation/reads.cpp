@@ -269,14 +269,18 @@ Box3d ColliderShape::own_bounds() const { return data_->collider.shape->bounds()
 
 namespace {
 
-/// kg, of a rigid body; 0 of other colliders
+/// Null of a collider that is no rigid body.
 template <class World>
-double mass_of(const World& world, const Collider& c) {
-  if (!c.rigid) return 0;
+const RigidBody* body_of(const World& world, const Collider& c) {
   const auto number = static_cast<std::size_t>(&c - world.colliders.data());
   const auto body =
       std::find_if(world.rigid.begin(), world.rigid.end(), [&](const RigidBody& b) { return b.collider == number; });
-  return body == world.rigid.end() ? 0 : body->mass;
+  return body == world.rigid.end() ? nullptr : &*body;
+}
+template <class World>
+double mass_of(const World& world, const Collider& c) {
+  const RigidBody* body = body_of(world, c);
+  return body ? body->mass : 0;
 }
 
 }  // namespace
@@ -286,6 +290,7 @@ ColliderState Simulation::collider(std::string_view name) const {
     const auto& world = engine.world();
     const Collider& c = impl_->collider(world, name);
     ColliderState state{c.pose, c.twist, mass_of(world, c)};
+    if (const RigidBody* body = body_of(world, c)) state.restitution = body->restitution;
     const auto number = static_cast<std::size_t>(&c - world.colliders.data());
     const Impl::Received& received = impl_->received;
     if (number < received.impulse.size() && received.seconds > 0)
