@@ -1,5 +1,5 @@
-// Cells that colliders cut along which a liquid slips, in the equation of viscosity: such a surface
-// holds the liquid across, and does nothing to it along.
+// Stress across the surfaces of colliders, in the equation of viscosity: one along which a liquid
+// slips holds it across, and does nothing to it along.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,26 +11,28 @@
 
 namespace dreampm {
 
-/// Stresses count by what lies outside of the colliders. What flows out of a cell that they cut,
+/// What flows out of a cell that a collider cuts,
 ///   D = sum of A u + (1 - A) u_s  over its faces, outward,
 /// is what the pressure brings to 0. kappa D^2/2 is added to what the velocities minimise: kappa D
-/// is the liquid's stress across the surface, and no steady flow is changed. Faces behind the
+/// is the liquid's stress across the surface, and no steady flow is changed. So it is where liquid
+/// slips along a collider, and on rigid bodies, else what pressure and viscosity do to a light one
+/// in turn shakes it. Where it slips, stresses count by what lies outside, and faces behind the
 /// surface go on as the flow does before it, without divergence: beta (sum of d_a u_a)^2/2.
 template <class R>
-class SlippingCells {
+class SurfaceStress {
  public:
   using Field = LargeVector<R>;
   using Faces = std::array<Field, 3>;
 
-  /// Finds what such colliders leave of cells, faces and edges.
+  /// Finds what colliders along which it slips leave of cells, faces and edges.
   void begin(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut);
-  /// Whether there are any such colliders; else the rest must not be asked for.
+  /// Whether there are such colliders or rigid bodies; else the rest must not be asked for.
   bool any() const { return !cell_.empty(); }
   /// What they leave of a cell, and of cubes of its size around a face and an edge.
   R in_cell(std::size_t c) const { return cell_[c]; }
   R at_face(std::size_t a, std::size_t f) const { return face_[a][f]; }
   R at_edge(std::size_t axis, std::size_t e) const { return edge_[axis][e]; }
-  /// The part that they close of a face between the walls.
+  /// The part of a face between the walls that a collider closes along which liquid slips.
   R closed(const MacGrid<R>& grid, std::size_t a, std::size_t f) const {
     const std::uint16_t owner = grid.owner[a][f];
     return owner == grid.no_owner || grid.holding.colliders[owner] ? R(0) : 1 - grid.open[a][f];
@@ -40,7 +42,7 @@ class SlippingCells {
   /// velocity of a face is known. Uses the depths, and the last pressure.
   template <class Counts>
   void find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion, const Counts& counts);
-  /// kappa of a cell; 0 where none of their surfaces is.
+  /// kappa of a cell; 0 where no such surface is.
   R kappa(std::size_t c) const { return kappa_[c]; }
   /// What a face resists by these stresses alone.
   R stiffness(const MacGrid<R>& grid, std::size_t a, const RowPlaces& at, std::size_t l) const {
@@ -73,6 +75,7 @@ class SlippingCells {
   /// Of a surface in a cell [dx^2]: less in a gap that is narrower than a cell.
   static constexpr double least_area = 0.3;
 
+  std::vector<bool> stiff_;  ///< of World::colliders
   Field cell_;
   Faces face_, edge_;
   Field kappa_, beta_, pull_, swell_;
@@ -81,7 +84,7 @@ class SlippingCells {
 
 template <class R>
 template <class Counts>
-void SlippingCells<R>::find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion,
+void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion,
                                       const Counts& counts) {
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
@@ -90,24 +93,24 @@ void SlippingCells<R>::find_stiffness(const World<R>& world, const MacGrid<R>& g
       const std::size_t c = at.own + l;
       if (!(grid.depth[c] > R(0))) continue;
       R area2 = 0;
-      bool cut = false, whole = true;
+      bool cut = false, slips = false, whole = true;
       for (std::size_t a = 0; a < 3; ++a) {
         R across = 0;
         for (const std::size_t f : {c, at.high[a] + l}) {
           whole = whole && counts(a, f);
-          const R part = closed(grid, a, f);
-          if (!(part > R(0))) continue;
-          cut = true, across += f == c ? part : -part;
+          const std::uint16_t owner = grid.owner[a][f];
+          if (owner == grid.no_owner || !stiff_[owner]) continue;
+          const R part = 1 - grid.open[a][f];
+          cut = true, slips = slips || !grid.holding.colliders[owner], across += f == c ? part : -part;
           // What may leave a surface stays only where it was pressed to it.
-          if (world.colliders[grid.owner[a][f]].contact() == WallType::separate)
-            whole = whole && was_pressed(grid, at, l);
+          if (world.colliders[owner].contact() == WallType::separate) whole = whole && was_pressed(grid, at, l);
         }
         area2 += across * across;
       }
       if (!cut || !whole) continue;
       kappa_[c] =
           2 * diffusion * static_cast<R>(normal_stiffness) / std::max(std::sqrt(area2), static_cast<R>(least_area));
-      beta_[c] = 2 * diffusion * static_cast<R>(inner_stiffness) * cell_[c];
+      if (slips) beta_[c] = 2 * diffusion * static_cast<R>(inner_stiffness) * cell_[c];
     }
   });
   grid.wrap(kappa_), grid.wrap(beta_);
