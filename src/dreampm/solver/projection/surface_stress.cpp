@@ -66,6 +66,19 @@ void SurfaceStress<R>::find_stress(const MacGrid<R>& grid, const Faces& u, bool 
   });
 }
 
+template <class R>
+void SurfaceStress<R>::add_force(const MacGrid<R>& grid, Faces& f) const {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  parallel_for(rows_beside_.size(), 64, [&](std::size_t n) {
+    const RowPlaces at(rows[rows_beside_[n]]);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        f[a][c] += grid.open[a][c] * (pull_[c] - pull_[below]) + (swell_[c] - swell_[below]);
+      }
+  });
+}
+
 template class SurfaceStress<float>;
 template class SurfaceStress<double>;
 

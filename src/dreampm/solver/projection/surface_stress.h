@@ -57,9 +57,10 @@ class SurfaceStress {
   void add_flow(std::size_t c, double flow) { pull_[c] += kappa_[c] * static_cast<R>(flow); }
   /// Once all is added.
   void end_stress(const MacGrid<R>& grid) { grid.wrap(pull_), grid.wrap(swell_); }
-  /// kappa D, and beta times the divergence.
+  /// Adds minus the gradient of these sums to f.
+  void add_force(const MacGrid<R>& grid, Faces& f) const;
+  /// kappa D of cells.
   const Field& pull() const { return pull_; }
-  R swell(std::size_t c) const { return swell_[c]; }
 
  private:
   /// By the last pressure, of a cell or, where it is new, of those beside it.
@@ -79,7 +80,8 @@ class SurfaceStress {
   Field cell_;
   Faces face_, edge_;
   Field kappa_, beta_, pull_, swell_;
-  std::vector<std::uint32_t> cut_rows_;  ///< of the grid's rows, those with such cells
+  /// Of the grid's rows, those with such cells, and those with faces of such.
+  std::vector<std::uint32_t> cut_rows_, rows_beside_;
 };
 
 template <class R>
@@ -114,12 +116,18 @@ void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& g
     }
   });
   grid.wrap(kappa_), grid.wrap(beta_);
-  cut_rows_.clear();
+  cut_rows_.clear(), rows_beside_.clear();
   const auto rows = grid.cells.rows();
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    const R* const kappa = kappa_.data() + RowPlaces(rows[n]).own;
-    if (std::any_of(kappa, kappa + row_cells, [](R k) { return k > R(0); }))
-      cut_rows_.push_back(static_cast<std::uint32_t>(n));
+    const RowPlaces at(rows[n]);
+    const auto is_cut = [&](std::size_t first) {
+      const R* const kappa = kappa_.data() + first;
+      return std::any_of(kappa, kappa + row_cells, [](R k) { return k > R(0); });
+    };
+    const bool cut = is_cut(at.own);
+    if (cut) cut_rows_.push_back(static_cast<std::uint32_t>(n));
+    if (cut || kappa_[at.low[2]] > R(0) || is_cut(at.low[0]) || is_cut(at.low[1]))
+      rows_beside_.push_back(static_cast<std::uint32_t>(n));
   }
 }
 

@@ -212,7 +212,6 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vect
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t p = at.own + l;
         pull_[a][p] = normal_[a][p] * (u[a][at.high[a] + l] - u[a][p]);
-        if (slips) pull_[a][p] += surfaces_.swell(p);
         twist_[a][p] = shear_[a][p] * ((u[b][p] - u[b][at.low[c] + l]) + (u[c][p] - u[c][at.low[b] + l]));
       }
     }
@@ -226,10 +225,10 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vect
         const R sum = (pull_[a][p] - pull_[a][at.low[a] + l]) + (twist_[c][at.high[b] + l] - twist_[c][p]) +
                       (twist_[b][at.high[c] + l] - twist_[b][p]);
         f[a][p] = sum;
-        if (slips) f[a][p] += grid.open[a][p] * (surfaces_.pull()[p] - surfaces_.pull()[at.low[a] + l]);
       }
     }
   });
+  if (slips) surfaces_.add_force(grid, f);
   bodies_.gather(f, surfaces_, on_bodies);
 }
 
