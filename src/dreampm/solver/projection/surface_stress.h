@@ -70,9 +70,9 @@ class SurfaceStress {
       for (std::size_t a = 0; a < 3; ++a) pressure += grid.impulse[at.low[a] + l] + grid.impulse[at.high[a] + l];
     return pressure > R(0);
   }
-  /// Over the stiffness of a cell, 2 s: so much that a surface gives way by little, and not so much
-  /// that the solve gets hard.
-  static constexpr double normal_stiffness = 20, inner_stiffness = 20;
+  /// Where s is large, kappa and beta over the stiffness of a cell, 2 s: so much that a surface
+  /// gives way by little, and not so much that the solve gets hard.
+  static constexpr double stiffness_over_cells = 20;
   /// Of a surface in a cell [dx^2]: less in a gap that is narrower than a cell.
   static constexpr double least_area = 0.3;
 
@@ -88,6 +88,8 @@ template <class R>
 template <class Counts>
 void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion,
                                       const Counts& counts) {
+  // A pressure that acts after little viscosity finds the rest.
+  const R stiff = 2 * static_cast<R>(stiffness_over_cells) * diffusion * diffusion / (1 + diffusion);
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
     for (int lane = first; lane < last; ++lane) {
@@ -110,9 +112,8 @@ void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& g
         area2 += across * across;
       }
       if (!cut || !whole) continue;
-      kappa_[c] =
-          2 * diffusion * static_cast<R>(normal_stiffness) / std::max(std::sqrt(area2), static_cast<R>(least_area));
-      if (slips) beta_[c] = 2 * diffusion * static_cast<R>(inner_stiffness) * cell_[c];
+      kappa_[c] = stiff / std::max(std::sqrt(area2), static_cast<R>(least_area));
+      if (slips) beta_[c] = stiff * cell_[c];
     }
   });
   grid.wrap(kappa_), grid.wrap(beta_);
