@@ -45,10 +45,18 @@ double sum_over_cells(std::span<const Row> rows, std::vector<double>& parts, con
   return sum;
 }
 
-/// The part of a cell that liquid fills.
+/// The part of a cell that liquid fills: all of it where liquid is on all sides, however many
+/// particles lie there.
 template <class R>
-R liquid_in(const MacGrid<R>& grid, std::size_t c) {
-  return grid.solid_volume.empty() ? grid.density[c] : std::max(grid.density[c] - grid.solid_volume[c], R(0));
+R liquid_in(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
+  const std::size_t c = at.own + l;
+  if (!grid.solid_volume.empty()) return std::max(grid.density[c] - grid.solid_volume[c], R(0));
+  bool deep = grid.depth[c] > R(0);
+  for (std::size_t a = 0; a < 3; ++a) {
+    deep = deep && (grid.depth[at.low[a] + l] > R(0) || !(grid.open[a][c] > R(0)));
+    deep = deep && (grid.depth[at.high[a] + l] > R(0) || !(grid.open[a][at.high[a] + l] > R(0)));
+  }
+  return deep ? R(1) : grid.density[c];
 }
 
 }  // namespace
@@ -61,7 +69,7 @@ R Viscosity<R>::stiffness(const MacGrid<R>& grid, std::size_t a, const RowPlaces
     const LargeVector<R>& edges = shear_[3 - a - b];
     sum += edges[f] + edges[at.high[b] + l];
   }
-  if (slipping_.any()) sum += slipping_.stiffness(grid, a, at, l);
+  if (surfaces_.any()) sum += surfaces_.stiffness(grid, a, at, l);
   return sum;
 }
 
@@ -71,18 +79,23 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
   for (Faces* f :
        {&mass_, &inverse_, &velocity_, &residual_, &direction_, &product_, &normal_, &shear_, &pull_, &twist_})
     for (LargeVector<R>& v : *f) fill_field(v, size, R(0));
+  fill_field(liquid_, size, R(0));
+  for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
+    for (std::size_t l = 0; l < row_cells; ++l) liquid_[at.own + l] = liquid_in(grid, at, l);
+  });
+  grid.wrap(liquid_);
   const R s = static_cast<R>(diffusion);
-  const bool slips = slipping_.any();
-  const auto left_of_cell = [&](std::size_t c) { return slips ? slipping_.in_cell(c) : R(1); };
+  const bool slips = surfaces_.any();
+  const auto left_of_cell = [&](std::size_t c) { return slips ? surfaces_.in_cell(c) : R(1); };
   // Faces within a collider along which the liquid slips are those of the flow before it, where one
   // of their cells is not all within.
   const auto goes_on = [&](const Row& row, std::size_t a, const RowPlaces& at, std::size_t l) {
     const std::size_t f = at.own + l;
-    if (!slips || !(slipping_.closed(grid, a, f) > R(0))) return false;
+    if (!slips || !(surfaces_.closed(grid, a, f) > R(0))) return false;
     const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
     for (int t = 0; t < 3; ++t)
       if (!grid.within(t, cell[t]) || (t == static_cast<int>(a) && cell[t] == grid.low[t])) return false;
-    const auto holds = [&](std::size_t c) { return slipping_.in_cell(c) > R(0) && liquid_in(grid, c) > R(0); };
+    const auto holds = [&](std::size_t c) { return surfaces_.in_cell(c) > R(0) && liquid_[c] > R(0); };
     return holds(f) || holds(at.low[a] + l);
   };
   for_all_rows(grid.cells.rows(), [&](const Row& row, const RowPlaces& at) {
@@ -95,10 +108,10 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
           // What flows through its open part sticks.
           if (!closed) grid.free[a][f] = velocity_[a][f];
         } else if (is_known(grid.free[a][f]) || inner) {
-          R mass = (liquid_in(grid, f) + liquid_in(grid, below)) / 2;
-          if (slips && slipping_.at_face(a, f) < R(1)) {
-            const R own = slipping_.in_cell(f), other = slipping_.in_cell(below);
-            mass = slipping_.at_face(a, f) * (own * liquid_in(grid, f) + other * liquid_in(grid, below)) /
+          R mass = (liquid_[f] + liquid_[below]) / 2;
+          if (slips && surfaces_.at_face(a, f) < R(1)) {
+            const R own = surfaces_.in_cell(f), other = surfaces_.in_cell(below);
+            mass = surfaces_.at_face(a, f) * (own * liquid_[f] + other * liquid_[below]) /
                    std::max(own + other, static_cast<R>(least_face_mass));
           }
           mass_[a][f] = std::max(mass, static_cast<R>(least_face_mass));
@@ -129,7 +142,7 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
       bool all = within;
       for (std::size_t a = 0; a < 3; ++a) all = all && counts(a, c) && counts(a, at.high[a] + l);
       for (std::size_t a = 0; a < 3 && all; ++a)
-        normal_[a][c] = 2 * s * left_of_cell(c) * std::min(liquid_in(grid, c), R(1)) / way(a, c, at.high[a] + l);
+        normal_[a][c] = 2 * s * left_of_cell(c) * std::min(liquid_[c], R(1)) / way(a, c, at.high[a] + l);
       for (std::size_t axis = 0; axis < 3; ++axis) {
         // The edge along `axis`: faces of a beside one another along b, and the other way round.
         const std::size_t a = next(axis), b = after(axis);
@@ -145,12 +158,12 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
           R mass = mass_[along[n]][faces[n]];
           if (!grid.solid_sums[0].empty()) mass -= grid.solid_sums[along[n]][faces[n]].weight;
           held += std::clamp(mass, R(0), R(1)) / 4;
-          if (slips) left += slipping_.at_face(along[n], faces[n]) / 4;
+          if (slips) left += surfaces_.at_face(along[n], faces[n]) / 4;
           whole = whole && counts(along[n], faces[n]);
         }
         // Faces are a cell wide, and know less well than the edge what is left of it.
-        if (slips && slipping_.at_edge(axis, c) != left)
-          held *= slipping_.at_edge(axis, c) / std::max(left, static_cast<R>(least_face_mass));
+        if (slips && surfaces_.at_edge(axis, c) != left)
+          held *= surfaces_.at_edge(axis, c) / std::max(left, static_cast<R>(least_face_mass));
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
           // The faces before the wall are half a cell from it: over half of a cell, twice the
           // slope.
@@ -172,7 +185,7 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
     }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(normal_[a]), grid.wrap(shear_[a]);
-  if (slips) slipping_.find_stiffness(world, grid, s, counts);
+  if (slips) surfaces_.find_stiffness(world, grid, s, counts);
   // The diagonal.
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -187,11 +200,11 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
 template <class R>
 void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vector<Six>& bodies, bool moving, Faces& f,
                          std::vector<Six>& on_bodies) {
-  const bool slips = slipping_.any();
+  const bool slips = surfaces_.any();
   if (slips) {
-    slipping_.find_stress(grid, u, moving);
-    bodies_.add_flow(bodies, slipping_);
-    slipping_.end_stress(grid);
+    surfaces_.find_stress(grid, u, moving);
+    bodies_.add_flow(bodies, surfaces_);
+    surfaces_.end_stress(grid);
   }
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
@@ -199,7 +212,6 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vect
       for (std::size_t l = 0; l < row_cells; ++l) {
         const std::size_t p = at.own + l;
         pull_[a][p] = normal_[a][p] * (u[a][at.high[a] + l] - u[a][p]);
-        if (slips) pull_[a][p] += slipping_.swell(p);
         twist_[a][p] = shear_[a][p] * ((u[b][p] - u[b][at.low[c] + l]) + (u[c][p] - u[c][at.low[b] + l]));
       }
     }
@@ -213,11 +225,11 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vect
         const R sum = (pull_[a][p] - pull_[a][at.low[a] + l]) + (twist_[c][at.high[b] + l] - twist_[c][p]) +
                       (twist_[b][at.high[c] + l] - twist_[b][p]);
         f[a][p] = sum;
-        if (slips) f[a][p] += grid.open[a][p] * (slipping_.pull()[p] - slipping_.pull()[at.low[a] + l]);
       }
     }
   });
-  bodies_.gather(f, slipping_, on_bodies);
+  if (slips) surfaces_.add_force(grid, f);
+  bodies_.gather(f, surfaces_, on_bodies);
 }
 
 template <class R>
@@ -225,11 +237,11 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, const CutCel
                                  const BodyPressure<R>& bodies, double diffusion, double density) {
   ViscousSolve out;
   acts_ = true;
-  slipping_.begin(world, grid, cut);
+  surfaces_.begin(world, grid, cut);
   weigh(world, grid, diffusion);
   bodies_.begin(world, grid, density,
                 [&](std::size_t a, const RowPlaces& at, std::size_t l) { return stiffness(grid, a, at, l); });
-  bodies_.add_cells(bodies, slipping_);
+  bodies_.add_cells(bodies, surfaces_);
   const std::span<const Row> rows = grid.cells.rows();
   const auto each = [&](const auto& body) {
     for_all_rows(rows, [&](const Row&, const RowPlaces& at) {

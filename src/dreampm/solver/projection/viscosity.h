@@ -3,7 +3,7 @@
 #pragma once
 #include <array>
 
-#include "dreampm/solver/projection/slipping_cells.h"
+#include "dreampm/solver/projection/surface_stress.h"
 #include "dreampm/solver/projection/viscous_bodies.h"
 
 namespace dreampm {
@@ -21,7 +21,7 @@ struct ViscousSolve {
 /// over faces f, cells c and edges e, with the liquid that they hold, m and M, and differences d of
 /// neighbors. Free surfaces need no case: where there is no liquid there is no term. Faces of a
 /// rigid body that holds the liquid move as one, with the body's mass; where liquid slips along
-/// colliders, see SlippingCells.
+/// colliders, see SurfaceStress.
 template <class R>
 class Viscosity {
  public:
@@ -41,7 +41,7 @@ class Viscosity {
   /// the shear of an edge, that of both its components,
   R shear(std::size_t axis, std::size_t edge) const { return twist_[axis][edge]; }
   /// and the stress across the surfaces in a cell along which it slips, as a tension.
-  R pull(std::size_t cell) const { return acts_ && slipping_.any() ? slipping_.pull()[cell] : R(0); }
+  R pull(std::size_t cell) const { return acts_ && surfaces_.any() ? surfaces_.pull()[cell] : R(0); }
 
  private:
   using Faces = std::array<LargeVector<R>, 3>;
@@ -49,17 +49,18 @@ class Viscosity {
   /// Of its stresses, by which a face resists alone.
   R stiffness(const MacGrid<R>& grid, std::size_t axis, const RowPlaces& at, std::size_t lane) const;
   /// f = -gradient of the sums of stresses at u and, of bodies, at what they are faster;
-  /// `moving` as in SlippingCells. `on_bodies`: what they get.
+  /// `moving` as in SurfaceStress. `on_bodies`: what they get.
   void force(const MacGrid<R>& grid, const Faces& u, const std::vector<Six>& bodies, bool moving, Faces& f,
              std::vector<Six>& on_bodies);
 
-  Faces mass_;     ///< m; 0 of faces whose velocity is given
-  Faces inverse_;  ///< of the diagonal; 0 there
+  LargeVector<R> liquid_;  ///< of cells: the part that liquid fills
+  Faces mass_;             ///< m; 0 of faces whose velocity is given
+  Faces inverse_;          ///< of the diagonal; 0 there
   Faces velocity_, residual_, direction_, product_;
   Faces normal_;        ///< 2 s M of cells, along each axis
   Faces shear_;         ///< s M of edges: [a] of those along axis a, on the low sides of a cell
   Faces pull_, twist_;  ///< stresses: d_a u_a of cells, and of edges
-  SlippingCells<R> slipping_;
+  SurfaceStress<R> surfaces_;
   ViscousBodies<R> bodies_;
   bool acts_ = false;
   std::vector<Six> body_velocity_, body_residual_, body_direction_, body_product_, body_steps_;

@@ -13,11 +13,11 @@ void ViscousBodies<R>::lock(std::vector<Six>& vectors) const {
 }
 
 template <class R>
-void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SlippingCells<R>& slipping) {
+void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SurfaceStress<R>& surfaces) {
   cells_.clear();
-  if (slipping.any() && !bodies_.empty()) {
+  if (surfaces.any() && !bodies_.empty()) {
     for (const auto& cell : pressed.cells())
-      if (slipping.kappa(cell.place) > R(0)) cells_.push_back(cell);
+      if (surfaces.kappa(cell.place) > R(0)) cells_.push_back(cell);
     // One a body for each cell, of all of its faces.
     std::stable_sort(cells_.begin(), cells_.end(), [](const auto& a, const auto& b) {
       return std::tie(a.place, a.body) < std::tie(b.place, b.body);
@@ -30,7 +30,7 @@ void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SlippingC
         cells_[kept++] = cells_[n];
     cells_.resize(kept);
     for (const auto& cell : cells_) {
-      const auto kappa = static_cast<double>(slipping.kappa(cell.place));
+      const auto kappa = static_cast<double>(surfaces.kappa(cell.place));
       for (std::size_t n = 0; n < 6; ++n)
         for (std::size_t m = 0; m < 6; ++m) bodies_[cell.body].inverse[n][m] += kappa * cell.column[n] * cell.column[m];
     }
@@ -44,14 +44,14 @@ void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SlippingC
 }
 
 template <class R>
-void ViscousBodies<R>::gather(const Faces& f, const SlippingCells<R>& slipping, std::vector<Six>& bodies) const {
+void ViscousBodies<R>::gather(const Faces& f, const SurfaceStress<R>& surfaces, std::vector<Six>& bodies) const {
   bodies.assign(bodies_.size(), {});
   for (const Face& face : faces_)
     for (std::size_t n = 0; n < 6; ++n)
       bodies[face.body][n] += face.column[n] * static_cast<double>(f[face.axis][face.place]);
   for (const auto& cell : cells_)
     for (std::size_t n = 0; n < 6; ++n)
-      bodies[cell.body][n] -= cell.column[n] * static_cast<double>(slipping.pull()[cell.place]);
+      bodies[cell.body][n] -= cell.column[n] * static_cast<double>(surfaces.pull()[cell.place]);
   lock(bodies);
 }
 
@@ -70,8 +70,8 @@ void ViscousBodies<R>::scatter_more(const std::vector<Six>& bodies, Faces& u, Ma
 }
 
 template <class R>
-void ViscousBodies<R>::add_flow(const std::vector<Six>& bodies, SlippingCells<R>& slipping) const {
-  for (const auto& cell : cells_) slipping.add_flow(cell.place, dot(cell.column, bodies[cell.body]));
+void ViscousBodies<R>::add_flow(const std::vector<Six>& bodies, SurfaceStress<R>& surfaces) const {
+  for (const auto& cell : cells_) surfaces.add_flow(cell.place, dot(cell.column, bodies[cell.body]));
 }
 
 template <class R>

@@ -1,5 +1,5 @@
-// Cells that colliders cut along which a liquid slips, in the equation of viscosity: such a surface
-// holds the liquid across, and does nothing to it along.
+// Stress across the surfaces of colliders, in the equation of viscosity: one along which a liquid
+// slips holds it across, and does nothing to it along.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,26 +11,28 @@
 
 namespace dreampm {
 
-/// Stresses count by what lies outside of the colliders. What flows out of a cell that they cut,
+/// What flows out of a cell that a collider cuts,
 ///   D = sum of A u + (1 - A) u_s  over its faces, outward,
 /// is what the pressure brings to 0. kappa D^2/2 is added to what the velocities minimise: kappa D
-/// is the liquid's stress across the surface, and no steady flow is changed. Faces behind the
+/// is the liquid's stress across the surface, and no steady flow is changed. So it is where liquid
+/// slips along a collider, and on rigid bodies, else what pressure and viscosity do to a light one
+/// in turn shakes it. Where it slips, stresses count by what lies outside, and faces behind the
 /// surface go on as the flow does before it, without divergence: beta (sum of d_a u_a)^2/2.
 template <class R>
-class SlippingCells {
+class SurfaceStress {
  public:
   using Field = LargeVector<R>;
   using Faces = std::array<Field, 3>;
 
-  /// Finds what such colliders leave of cells, faces and edges.
+  /// Finds what colliders along which it slips leave of cells, faces and edges.
   void begin(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut);
-  /// Whether there are any such colliders; else the rest must not be asked for.
+  /// Whether there are such colliders or rigid bodies; else the rest must not be asked for.
   bool any() const { return !cell_.empty(); }
   /// What they leave of a cell, and of cubes of its size around a face and an edge.
   R in_cell(std::size_t c) const { return cell_[c]; }
   R at_face(std::size_t a, std::size_t f) const { return face_[a][f]; }
   R at_edge(std::size_t axis, std::size_t e) const { return edge_[axis][e]; }
-  /// The part that they close of a face between the walls.
+  /// The part of a face between the walls that a collider closes along which liquid slips.
   R closed(const MacGrid<R>& grid, std::size_t a, std::size_t f) const {
     const std::uint16_t owner = grid.owner[a][f];
     return owner == grid.no_owner || grid.holding.colliders[owner] ? R(0) : 1 - grid.open[a][f];
@@ -40,7 +42,7 @@ class SlippingCells {
   /// velocity of a face is known. Uses the depths, and the last pressure.
   template <class Counts>
   void find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion, const Counts& counts);
-  /// kappa of a cell; 0 where none of their surfaces is.
+  /// kappa of a cell; 0 where no such surface is.
   R kappa(std::size_t c) const { return kappa_[c]; }
   /// What a face resists by these stresses alone.
   R stiffness(const MacGrid<R>& grid, std::size_t a, const RowPlaces& at, std::size_t l) const {
@@ -55,9 +57,10 @@ class SlippingCells {
   void add_flow(std::size_t c, double flow) { pull_[c] += kappa_[c] * static_cast<R>(flow); }
   /// Once all is added.
   void end_stress(const MacGrid<R>& grid) { grid.wrap(pull_), grid.wrap(swell_); }
-  /// kappa D, and beta times the divergence.
+  /// Adds minus the gradient of these sums to f.
+  void add_force(const MacGrid<R>& grid, Faces& f) const;
+  /// kappa D of cells.
   const Field& pull() const { return pull_; }
-  R swell(std::size_t c) const { return swell_[c]; }
 
  private:
   /// By the last pressure, of a cell or, where it is new, of those beside it.
@@ -67,22 +70,26 @@ class SlippingCells {
       for (std::size_t a = 0; a < 3; ++a) pressure += grid.impulse[at.low[a] + l] + grid.impulse[at.high[a] + l];
     return pressure > R(0);
   }
-  /// Over the stiffness of a cell, 2 s: so much that a surface gives way by little, and not so much
-  /// that the solve gets hard.
-  static constexpr double normal_stiffness = 20, inner_stiffness = 20;
+  /// Where s is large, kappa and beta over the stiffness of a cell, 2 s: so much that a surface
+  /// gives way by little, and not so much that the solve gets hard.
+  static constexpr double stiffness_over_cells = 20;
   /// Of a surface in a cell [dx^2]: less in a gap that is narrower than a cell.
   static constexpr double least_area = 0.3;
 
+  std::vector<bool> stiff_;  ///< of World::colliders
   Field cell_;
   Faces face_, edge_;
   Field kappa_, beta_, pull_, swell_;
-  std::vector<std::uint32_t> cut_rows_;  ///< of the grid's rows, those with such cells
+  /// Of the grid's rows, those with such cells, and those with faces of such.
+  std::vector<std::uint32_t> cut_rows_, rows_beside_;
 };
 
 template <class R>
 template <class Counts>
-void SlippingCells<R>::find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion,
+void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion,
                                       const Counts& counts) {
+  // A pressure that acts after little viscosity finds the rest.
+  const R stiff = 2 * static_cast<R>(stiffness_over_cells) * diffusion * diffusion / (1 + diffusion);
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row& row, const RowPlaces& at) {
     const auto [first, last] = grid.lanes_within(row);
     for (int lane = first; lane < last; ++lane) {
@@ -90,33 +97,38 @@ void SlippingCells<R>::find_stiffness(const World<R>& world, const MacGrid<R>& g
       const std::size_t c = at.own + l;
       if (!(grid.depth[c] > R(0))) continue;
       R area2 = 0;
-      bool cut = false, whole = true;
+      bool cut = false, slips = false, whole = true;
       for (std::size_t a = 0; a < 3; ++a) {
         R across = 0;
         for (const std::size_t f : {c, at.high[a] + l}) {
           whole = whole && counts(a, f);
-          const R part = closed(grid, a, f);
-          if (!(part > R(0))) continue;
-          cut = true, across += f == c ? part : -part;
+          const std::uint16_t owner = grid.owner[a][f];
+          if (owner == grid.no_owner || !stiff_[owner]) continue;
+          const R part = 1 - grid.open[a][f];
+          cut = true, slips = slips || !grid.holding.colliders[owner], across += f == c ? part : -part;
           // What may leave a surface stays only where it was pressed to it.
-          if (world.colliders[grid.owner[a][f]].contact() == WallType::separate)
-            whole = whole && was_pressed(grid, at, l);
+          if (world.colliders[owner].contact() == WallType::separate) whole = whole && was_pressed(grid, at, l);
         }
         area2 += across * across;
       }
       if (!cut || !whole) continue;
-      kappa_[c] =
-          2 * diffusion * static_cast<R>(normal_stiffness) / std::max(std::sqrt(area2), static_cast<R>(least_area));
-      beta_[c] = 2 * diffusion * static_cast<R>(inner_stiffness) * cell_[c];
+      kappa_[c] = stiff / std::max(std::sqrt(area2), static_cast<R>(least_area));
+      if (slips) beta_[c] = stiff * cell_[c];
     }
   });
   grid.wrap(kappa_), grid.wrap(beta_);
-  cut_rows_.clear();
+  cut_rows_.clear(), rows_beside_.clear();
   const auto rows = grid.cells.rows();
   for (std::size_t n = 0; n < rows.size(); ++n) {
-    const R* const kappa = kappa_.data() + RowPlaces(rows[n]).own;
-    if (std::any_of(kappa, kappa + row_cells, [](R k) { return k > R(0); }))
-      cut_rows_.push_back(static_cast<std::uint32_t>(n));
+    const RowPlaces at(rows[n]);
+    const auto is_cut = [&](std::size_t first) {
+      const R* const kappa = kappa_.data() + first;
+      return std::any_of(kappa, kappa + row_cells, [](R k) { return k > R(0); });
+    };
+    const bool cut = is_cut(at.own);
+    if (cut) cut_rows_.push_back(static_cast<std::uint32_t>(n));
+    if (cut || kappa_[at.low[2]] > R(0) || is_cut(at.low[0]) || is_cut(at.low[1]))
+      rows_beside_.push_back(static_cast<std::uint32_t>(n));
   }
 }
 

@@ -1,4 +1,4 @@
-#include "dreampm/solver/projection/slipping_cells.h"
+#include "dreampm/solver/projection/surface_stress.h"
 
 #include <algorithm>
 
@@ -7,9 +7,12 @@
 namespace dreampm {
 
 template <class R>
-void SlippingCells<R>::begin(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut) {
+void SurfaceStress<R>::begin(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut) {
   const std::vector<bool>& holds = grid.holding.colliders;
-  if (std::find(holds.begin(), holds.end(), false) == holds.end()) {
+  stiff_ = holds;
+  stiff_.flip();
+  for (const RigidBody& body : world.rigid) stiff_[body.collider] = true;
+  if (std::find(stiff_.begin(), stiff_.end(), true) == stiff_.end()) {
     cell_.clear();
     return;
   }
@@ -43,7 +46,7 @@ void SlippingCells<R>::begin(const World<R>& world, const MacGrid<R>& grid, cons
 }
 
 template <class R>
-void SlippingCells<R>::find_stress(const MacGrid<R>& grid, const Faces& u, bool moving) {
+void SurfaceStress<R>::find_stress(const MacGrid<R>& grid, const Faces& u, bool moving) {
   const std::span<const CellRows::Row> rows = grid.cells.rows();
   const bool solids = moving && !grid.solid[0].empty();
   parallel_for(cut_rows_.size(), 64, [&](std::size_t n) {
@@ -63,7 +66,20 @@ void SlippingCells<R>::find_stress(const MacGrid<R>& grid, const Faces& u, bool 
   });
 }
 
-template class SlippingCells<float>;
-template class SlippingCells<double>;
+template <class R>
+void SurfaceStress<R>::add_force(const MacGrid<R>& grid, Faces& f) const {
+  const std::span<const CellRows::Row> rows = grid.cells.rows();
+  parallel_for(rows_beside_.size(), 64, [&](std::size_t n) {
+    const RowPlaces at(rows[rows_beside_[n]]);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t l = 0; l < row_cells; ++l) {
+        const std::size_t c = at.own + l, below = at.low[a] + l;
+        f[a][c] += grid.open[a][c] * (pull_[c] - pull_[below]) + (swell_[c] - swell_[below]);
+      }
+  });
+}
+
+template class SurfaceStress<float>;
+template class SurfaceStress<double>;
 
 }  // namespace dreampm
