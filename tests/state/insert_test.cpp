@@ -40,10 +40,8 @@ std::vector<ParticleSeed> scattered(const World<float>& w, std::uint32_t first, 
   std::vector<ParticleSeed> seeds;
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto at = [&](std::uint64_t axis) { return uniform(axis, first + i); };
-    seeds.push_back({first + i,
-                     box.min + Vec3d{from + (to - from) * at(0), at(1), at(2)} * box.size(),
-                     {at(3), at(4), at(5)},
-                     {}});
+    seeds.push_back(
+        {first + i, box.min + Vec3d{from + (to - from) * at(0), at(1), at(2)} * box.size(), {at(3), at(4), at(5)}, {}});
   }
   return seeds;
 }

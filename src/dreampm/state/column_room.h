@@ -73,10 +73,12 @@ class ColumnRoom {
   /// Calls body(from, to, count) for what comes to [begin, end), the last first.
   template <class Body>
   void for_moves(std::size_t begin, std::size_t end, const Body& body) const {
-    auto run = std::lower_bound(runs_.begin(), runs_.end(), end, [](const Run& r, std::size_t at) { return r.to < at; });
+    auto run =
+        std::lower_bound(runs_.begin(), runs_.end(), end, [](const Run& r, std::size_t at) { return r.to < at; });
     while (run != runs_.begin()) {
       --run;
-      const std::size_t low = std::max<std::size_t>(run->to, begin), high = std::min<std::size_t>(run->to + run->count, end);
+      const std::size_t low = std::max<std::size_t>(run->to, begin),
+                        high = std::min<std::size_t>(run->to + run->count, end);
       if (run->to + run->count <= begin) return;
       if (low < high) body(run->from + (low - run->to), low, high - low);
     }

@@ -67,8 +67,8 @@ class Mouth {
     if (!moves_) return meet(box, bounds_);
     Box3d its;
     for (int c = 0; c < 8; ++c)
-      its.add(pose_.inverse({c & 4 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y,
-                             c & 1 ? box.max.z : box.min.z}));
+      its.add(
+          pose_.inverse({c & 4 ? box.max.x : box.min.x, c & 2 ? box.max.y : box.min.y, c & 1 ? box.max.z : box.min.z}));
     return meet(its, bounds_);
   }
 
