@@ -109,7 +109,7 @@ class ReachedNodes {
 
 template <class R>
 PassStats state_bounds(const World<R>& world) {
-  /// As of PassStats.
+  /// The bounds among PassStats.
   struct Bounds {
     double wave_speed = 0, viscosity = 0, j_min = PassStats{}.j_min, j_max = PassStats{}.j_max;
     bool finite = true;
