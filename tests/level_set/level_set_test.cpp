@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/sample.h"
@@ -40,6 +43,23 @@ TEST(LevelSet, BallHasItsDistanceNormalAndVolume) {
   EXPECT_NEAR(level_set_volume(*ball), ball_volume, 0.002 * ball_volume);
   EXPECT_NEAR(region_volume(*ball, h), ball_volume, 0.002 * ball_volume);
   EXPECT_NEAR(filled(*ball, h), ball_volume, 0.005 * ball_volume);
+}
+
+TEST(LevelSet, ManyDistancesAtOnceHaveTheBitsOfOne) {
+  const auto ball = mesh_region(sphere_mesh(1, 4, {5, -2, 1}), 0.1, "ball");
+  std::array<std::vector<double>, 3> columns;
+  for (std::uint64_t i = 0; i < 5000; ++i)
+    for (std::uint64_t a = 0; a < 3; ++a)
+      columns[a].push_back((a == 0 ? 5 : a == 1 ? -2 : 1) + (i < 4900 ? 3 : 40) * (uniform(4 + a, i) - 0.5));
+  columns[0].back() = 1e30, columns[1].back() = -1e30;
+  std::vector<double> found(columns[0].size());
+  ball->distances({{columns[0].data(), columns[1].data(), columns[2].data()}, found.size()}, found.data());
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_EQ(found[i], ball->distance({columns[0][i], columns[1][i], columns[2][i]})) << i;
+    near += std::abs(found[i]) < 0.29;
+  }
+  EXPECT_GT(near, 500u);
 }
 
 TEST(LevelSet, AHoleOfFiveVoxelsDoesNotLeak) {

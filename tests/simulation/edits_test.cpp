@@ -175,6 +175,22 @@ TEST(Edits, GoBesideCollidersAndProbes) {
   s.advance_to(0.02);
 }
 
+TEST(Edits, OfGravityLeaveTheGridOfExplicitStepsAsItIs) {
+  for (const char* backend : {"cpu", "reference"}) {
+    Simulation s = pressed_cube(backend, "apic"), other = pressed_cube(backend, "apic");
+    s.set_gravity({0, 0, 30});
+    EXPECT_EQ(s.dt(), other.dt());
+    s.set_gravity({0, 0, 0});
+    EXPECT_EQ(s.hash(), other.hash());
+    s.set_gravity({0, 0, 30});
+    const double gained = s.totals().mass * 30 * s.dt();
+    s.step(), other.step();
+    const Vec3d more = s.totals().momentum - other.totals().momentum;
+    EXPECT_NEAR(more.z, gained, 1e-3 * gained) << backend;
+    EXPECT_NEAR(more.y, 0, 1e-3 * gained) << backend;
+  }
+}
+
 TEST(Edits, WallsOpen) {
   Simulation s(dam_and_jelly(), quiet());
   s.set_wall(Side::x_min, "open");

@@ -109,25 +109,32 @@ class ReachedNodes {
 
 template <class R>
 PassStats state_bounds(const World<R>& world) {
-  PassStats all;
+  /// The bounds among PassStats.
+  struct Bounds {
+    double wave_speed = 0, viscosity = 0, j_min = PassStats{}.j_min, j_max = PassStats{}.j_max;
+    bool finite = true;
+  };
+  const auto widen = [](Bounds& to, const Bounds& by) {
+    to.wave_speed = std::max(to.wave_speed, by.wave_speed), to.viscosity = std::max(to.viscosity, by.viscosity);
+    to.j_min = std::min(to.j_min, by.j_min), to.j_max = std::max(to.j_max, by.j_max);
+    to.finite = to.finite && by.finite;
+  };
+  Bounds all;
   for (const ParticleSet<R>& set : world.sets)
     Materials::with(set.material, [&]<class M>() {
       const auto law = M::template Law<R>::from(set.values);
-      const auto of_particle = [&](PassStats& sum, std::size_t p) {
+      const auto of_particle = [&](Bounds& to, std::size_t p) {
         const auto state = state_of<M>(set, p);
         const StressResponse<R> r = law.respond(state);
-        const double j = static_cast<double>(volume_ratio(law, state));
-        PassStats one;
-        one.wave_speed = static_cast<double>(r.sound_speed);
-        one.viscosity = static_cast<double>(r.kinematic_viscosity);
-        one.j_min = one.j_max = j;
-        one.finite = std::isfinite(one.wave_speed + j);
-        sum.add(one);
+        const auto c = static_cast<double>(r.sound_speed), j = static_cast<double>(volume_ratio(law, state));
+        widen(to, {c, static_cast<double>(r.kinematic_viscosity), j, j, std::isfinite(c + j)});
       };
-      all.add(parallel_reduce(set.size(), PassStats{}, of_particle,
-                              [](PassStats& to, const PassStats& from) { to.add(from); }));
+      widen(all, parallel_reduce(set.size(), Bounds{}, of_particle, widen));
     });
-  return all;
+  PassStats stats;
+  stats.wave_speed = all.wave_speed, stats.viscosity = all.viscosity;
+  stats.j_min = all.j_min, stats.j_max = all.j_max, stats.finite = all.finite;
+  return stats;
 }
 
 template <class R>

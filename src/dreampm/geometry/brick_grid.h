@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dreampm/math/four.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -67,10 +68,16 @@ class BrickGrid {
   }
   /// Trilinear between voxels, at p [voxels].
   double sample(const Vec3d& p) const;
+  /// The same at many places, to the same bits: place(axis, number) [voxels].
+  template <class InVoxels>
+  void samples(std::size_t count, const InVoxels& place, double* to) const;
   /// Where the values grow at p [voxels], of length 1; up where they are the same all about.
   Vec3d direction(const Vec3d& p) const;
 
  private:
+  /// In the cell that begins at voxel `i`, at `f` of its sides.
+  double sample(const Vec3i& i, const Vec3d& f) const;
+
   Vec3i low_{}, count_{};
   float band_ = 0;
   std::vector<std::int32_t> slots_;
@@ -80,21 +87,45 @@ class BrickGrid {
 inline double BrickGrid::sample(const Vec3d& p) const {
   const auto cell = [](double v) { return static_cast<std::int32_t>(std::floor(std::clamp(v, -1e9, 1e9))); };
   const Vec3i i{cell(p.x), cell(p.y), cell(p.z)};
-  double v[8];
+  return sample(i, p - static_cast<Vec3d>(i));
+}
+
+inline double BrickGrid::sample(const Vec3i& i, const Vec3d& f) const {
   const Vec3i b{i.x >> 3, i.y >> 3, i.z >> 3};
+  // Before and after along z, at the four places along x and y.
+  Four<double> before, after;
   if ((i.x & 7) < 7 && (i.y & 7) < 7 && (i.z & 7) < 7) {  // all eight in one brick
     if (!covers(b)) return band_;
     const std::int32_t s = slots_[slot_index(b)];
     if (s < 0) return s == inside ? -band_ : band_;
     const float* q = values_[std::size_t(s)].data() + offset(i.x, i.y, i.z);
-    v[0] = q[0], v[1] = q[1], v[2] = q[8], v[3] = q[9], v[4] = q[64], v[5] = q[65], v[6] = q[72], v[7] = q[73];
+    before = Four<double>{q[0], q[8], q[64], q[72]}, after = Four<double>{q[1], q[9], q[65], q[73]};
   } else {
-    for (int k = 0; k < 8; ++k) v[k] = at(i.x + (k >> 2), i.y + (k >> 1 & 1), i.z + (k & 1));
+    for (int k = 0; k < 4; ++k) {
+      before[k] = at(i.x + (k >> 1), i.y + (k & 1), i.z);
+      after[k] = at(i.x + (k >> 1), i.y + (k & 1), i.z + 1);
+    }
   }
-  const Vec3d f = p - static_cast<Vec3d>(i);
-  const auto mix = [](double a, double c, double t) { return a + (c - a) * t; };
-  return mix(mix(mix(v[0], v[1], f.z), mix(v[2], v[3], f.z), f.y), mix(mix(v[4], v[5], f.z), mix(v[6], v[7], f.z), f.y),
-             f.x);
+  const Four<double> z = before + (after - before) * f.z;
+  const Two<double> low{z[0], z[2]}, high{z[1], z[3]}, y = low + (high - low) * f.y;
+  return y[0] + (y[1] - y[0]) * f.x;
+}
+
+template <class InVoxels>
+void BrickGrid::samples(std::size_t count, const InVoxels& place, double* to) const {
+  constexpr std::size_t at_once = 32;
+  std::array<std::array<double, at_once>, 3> cells, parts;
+  for (std::size_t begin = 0; begin < count; begin += at_once) {
+    const std::size_t some = std::min(at_once, count - begin);
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t i = 0; i < some; ++i) {
+        const double p = place(a, begin + i), cell = std::floor(std::clamp(p, -1e9, 1e9));
+        cells[a][i] = cell, parts[a][i] = p - cell;
+      }
+    for (std::size_t i = 0; i < some; ++i)
+      to[begin + i] = sample(static_cast<Vec3i>(Vec3d{cells[0][i], cells[1][i], cells[2][i]}),
+                             {parts[0][i], parts[1][i], parts[2][i]});
+  }
 }
 
 inline Vec3d BrickGrid::direction(const Vec3d& p) const {

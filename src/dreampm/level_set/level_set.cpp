@@ -32,6 +32,12 @@ class LevelSet final : public Region {
       : field_(std::move(field)), origin_(origin), voxel_(voxel), bounds_(bounds) {}
 
   double distance(const Vec3d& p) const override { return field_.sample((p - origin_) / voxel_) * voxel_; }
+  void distances(const PointColumns& points, double* to) const override {
+    const double origin[3] = {origin_.x, origin_.y, origin_.z};
+    field_.samples(
+        points.count, [&](std::size_t a, std::size_t i) { return (points.at[a][i] - origin[a]) / voxel_; }, to);
+    for (std::size_t i = 0; i < points.count; ++i) to[i] *= voxel_;
+  }
   Vec3d normal(const Vec3d& p) const override { return field_.direction((p - origin_) / voxel_); }
   Box3d bounds() const override { return bounds_; }
 

@@ -94,8 +94,8 @@ enum class Tap {
 };
 
 /// Of each tap three rows: the step without it, the step with it, and what it costs in shares of
-/// the step [%]. Both take turns. Takes all of the options but droplets. Throws InputError for one
-/// that it does not have.
+/// the step [%]. Both start from the same matter in motion, and take turns. Takes all of the
+/// options but droplets. Throws InputError for one that it does not have.
 std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vector<Tap>& taps);
 
 struct TableOptions {

@@ -43,7 +43,7 @@ Pace pace_of(const World<R>& world, const Motion<R>& motion) {
 }  // namespace
 
 template <class R>
-void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
+void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion, Motion<R>& spare) {
   backend.download(world, motion, MatterFields::id | MatterFields::motion);
   // What throws comes before the sort, so that world and motion stay in one order.
   const PassStats stats = backend.state_bounds(world);
@@ -62,16 +62,18 @@ void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion) {
         world.settings.fixed_dt, world.time, longest, largest_cfl);
 
   world.aim_colliders();
-  const MotionById<R> by_id(world, std::move(motion));
+  MotionById<R> by_id(world, std::move(motion));
+  motion = std::move(spare);
   backend.sort(world);
   backend.download(world, motion, MatterFields::id);
-  motion = by_id.ordered(world);
+  by_id.order(world, motion);
+  spare = std::move(by_id).release();
   backend.upload(world, motion, MatterFields::motion);
   backend.scatter_particles(world, motion);
   world.formed_for(world.dt_next);
 }
 
-template void form_grid(World<float>&, Backend<float>&, Motion<float>&);
-template void form_grid(World<double>&, Backend<double>&, Motion<double>&);
+template void form_grid(World<float>&, Backend<float>&, Motion<float>&, Motion<float>&);
+template void form_grid(World<double>&, Backend<double>&, Motion<double>&, Motion<double>&);
 
 }  // namespace dreampm

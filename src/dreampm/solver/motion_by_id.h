@@ -59,6 +59,11 @@ class MotionById {
   /// In the order of the particles now, each of which must have been there.
   Motion<R> ordered(const World<R>& world) const {
     Motion<R> out;
+    order(world, out);
+    return out;
+  }
+  /// The same in memory that is there.
+  void order(const World<R>& world, Motion<R>& out) const {
     out.sets.resize(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       const std::span<const std::uint32_t> ids = ParticleSetView<R>(world, s).ids();
@@ -71,8 +76,9 @@ class MotionById {
         to.energy[i] = from.energy[p], to.volume_ratio[i] = from.volume_ratio[p];
       });
     }
-    return out;
   }
+  /// Gives back the motion that it was made of.
+  Motion<R> release() && { return std::move(motion_); }
 
  private:
   static constexpr std::size_t at_once = 1 << 12;

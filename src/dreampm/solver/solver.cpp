@@ -22,10 +22,11 @@ class ExplicitSolver final : public Solver<R> {
   StepSums step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) override {
     return dreampm::step(world, backend_, &motion, next_sample_time, contacts);
   }
-  void form_grid(World<R>& world, Motion<R>& motion) override { dreampm::form_grid(world, backend_, motion); }
+  void form_grid(World<R>& world, Motion<R>& motion) override { dreampm::form_grid(world, backend_, motion, spare_); }
 
  private:
   Backend<R>& backend_;
+  Motion<R> spare_;  ///< of form_grid
 };
 
 }  // namespace

@@ -82,19 +82,19 @@ void add_drain(BenchScene& scene, const Room& room) {
   scene.world.sinks.push_back({"drain", box(middle - half, middle + half)});
 }
 
-void add_rotor(BenchScene& scene, const Room& room, bool turns) {
+void add_rotor(BenchScene& scene, const Room& room) {
   World<float>& w = scene.world;
   const Vec3d middle{0.5 * room.size.x, 0.4 * room.size.y, 0.5 * room.size.z};
   const double radius = 0.35 * std::min({room.size.x, room.size.y, room.size.z});
   Collider rotor;
   rotor.name = "rotor";
   rotor.shape = mesh_region(lobed_ball(middle, radius), 0.5 * w.dx, rotor.name);
-  if (turns) rotor.twist = {{}, {0, rotor_speed / radius, 0}, middle};
+  rotor.twist = {{}, {0, rotor_speed / radius, 0}, middle};
   std::erase_if(scene.seeds[0], [&](const ParticleSeed& s) { return rotor.distance(s.position) < 0.25 * w.dx; });
   w.colliders.push_back(std::move(rotor));
 }
 
-BenchScene scene_of(const StepBenchOptions& options, std::optional<Tap> tap, Rotor rotor) {
+BenchScene scene_of(const StepBenchOptions& options, Tap tap) {
   const MaterialInfo& material = bench_material(options.material);
   const Vec3i cells = options.cells.value_or(column_cells(options.particles));
   BenchScene scene = options.large_steps ? tank_scene(material, cells) : column_scene(material, cells);
@@ -108,7 +108,7 @@ BenchScene scene_of(const StepBenchOptions& options, std::optional<Tap> tap, Rot
                   std::min(4.0, 0.25 * std::min(cells.x, cells.z)) * w.dx};
   if (tap == Tap::emitter) add_tap(scene, room);
   if (tap == Tap::sink) add_drain(scene, room);
-  if (rotor != Rotor::none) add_rotor(scene, room, rotor == Rotor::turns);
+  if (tap == Tap::moving) add_rotor(scene, room);
   return scene;
 }
 
@@ -131,15 +131,25 @@ TapText text_of(Tap tap) {
 
 }  // namespace
 
-TappedSteps::TappedSteps(const StepBenchOptions& options, std::optional<Tap> tap, Rotor rotor, const std::string& isa)
+TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const std::string& isa)
     : tap_(tap), steps_per_piece_(options.large_steps ? large_steps : explicit_steps) {
-  BenchScene scene = scene_of(options, tap, rotor);
+  BenchScene scene = scene_of(options, tap);
   engine_ = std::make_unique<Engine<float>>(std::move(scene.world), make_cpu_backend(isa));
   engine_->begin(scene.seeds);
   scene.seeds = {};
-  // What is edited needs velocities.
   for (int n = 0; n < steps_per_piece_; ++n) step();
   start_ = std::make_unique<const World<float>>(engine_->world());
+}
+
+TappedSteps TappedSteps::without_tap(const std::string& isa) const {
+  TappedSteps other;
+  other.steps_per_piece_ = steps_per_piece_;
+  auto start = std::make_unique<World<float>>(*start_);
+  start->emitters.clear(), start->sinks.clear();
+  for (Collider& c : start->colliders) c.twist = {};
+  other.start_ = std::move(start);
+  other.engine_ = std::make_unique<Engine<float>>(World<float>(*other.start_), make_cpu_backend(isa));
+  return other;
 }
 
 void TappedSteps::step() {
@@ -182,9 +192,7 @@ std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vec
   const std::string isa(make_cpu_backend(options.isa)->isa()), solver = options.large_steps ? "projection" : "steps";
   std::vector<BenchRow> rows;
   for (const Tap tap : taps) {
-    const bool moving = tap == Tap::moving;
-    TappedSteps alone(options, std::nullopt, moving ? Rotor::stands : Rotor::none, isa),
-        with(options, tap, moving ? Rotor::turns : Rotor::none, isa);
+    TappedSteps with(options, tap, isa), alone = with.without_tap(isa);
     Timing first, second;
     std::vector<double> shares, cpu_shares;
     for (int window = 0; window < options.windows; ++window) {

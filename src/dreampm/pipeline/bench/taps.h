@@ -11,25 +11,25 @@
 
 namespace dreampm {
 
-/// A mesh of some thousand faces in the matter.
-enum class Rotor { none, stands, turns };
-
 /// The steps of one world, again and again from the same state.
 class TappedSteps {
  public:
-  /// Water or another material with one of the taps, or none, moved far enough for all to be warm.
-  /// With the threads that may be used.
-  TappedSteps(const StepBenchOptions& options, std::optional<Tap> tap, Rotor rotor, const std::string& isa);
+  /// Water or another material with a tap, moved far enough for all to be warm. With the threads
+  /// that may be used.
+  TappedSteps(const StepBenchOptions& options, Tap tap, const std::string& isa);
+  /// The same matter, as it moves then, without the tap; of a mesh that turns: that stands still.
+  TappedSteps without_tap(const std::string& isa) const;
 
   std::uint64_t particles() const { return start_->particles(); }
   /// Steps from the start for at least that long. Adds what a particle-step took [ns].
   void run_window(double seconds, Timing& timing);
 
  private:
+  TappedSteps() = default;
   void step();
 
   std::optional<Tap> tap_;
-  int steps_per_piece_;
+  int steps_per_piece_ = 1;
   bool grows_ = true;  ///< what the edit changes
   std::unique_ptr<Engine<float>> engine_;
   std::unique_ptr<const World<float>> start_;

@@ -287,7 +287,7 @@ typename SolidSteps<R>::Kinetic SolidSteps<R>::run(World<R>& world, const std::v
     // Its frame ends with the part.
     solids_.frame = 1, solids_.settings.fps = 1 / (world.time + dt * part / parts);
     add(part == 1 ? 0.5 : 1.0);
-    form_grid(solids_, *backend_, motion_);
+    form_grid(solids_, *backend_, motion_, spare_);
     for (bool done = false; !done;) {
       if (++count > most_steps)
         throw NumericalFailure(

@@ -73,7 +73,7 @@ class SolidSteps {
 
   Backend<R>* backend_;  ///< null where there are no solids
   World<R> solids_;
-  Motion<R> motion_;
+  Motion<R> motion_, spare_;                     ///< spare_: memory of form_grid
   Vec3<R> gained_;                               ///< m/s, by gravity in half of the step
   std::vector<std::size_t> sets_;                ///< of the world, in their order here
   Pushes<R> pushed_;                             ///< in the order in which they were given back
