@@ -114,6 +114,8 @@ struct Seen {
   std::vector<std::uint64_t> hashes;
   std::vector<double> totals;
   std::vector<std::vector<Vec3f>> positions, velocities, surfaces;
+  std::vector<std::vector<Vec3d>> visited;
+  std::vector<std::vector<float>> attributes;
 };
 
 Seen edited(const std::string& backend) {
@@ -134,6 +136,17 @@ Seen edited(const std::string& backend) {
       }
     if (step % 5 == 2) seen.hashes.push_back(s.hash());
     if (step % 5 == 3) seen.surfaces.push_back(s.surface("water").vertices);
+    if (step % 10 == 4) {
+      std::vector<Vec3d>& all = seen.visited.emplace_back();
+      s.visit("jelly", {.velocity = true}, [&](const ParticleBatch& some) {
+        all.insert(all.end(), some.position.begin(), some.position.end());
+        all.insert(all.end(), some.velocity.begin(), some.velocity.end());
+      });
+    }
+    if (step % 10 == 9) {
+      const AttributeView f = s.attribute("jelly", "f");
+      seen.attributes.emplace_back(f.values.begin(), f.values.end());
+    }
     if (step % 20 == 4) {
       const Snapshot then = s.snapshot();
       s.step();
@@ -154,6 +167,8 @@ TEST(Away, EditsViewsAndSnapshotsAreTheSame) {
     EXPECT_EQ(away.positions, plain.positions);
     EXPECT_EQ(away.velocities, plain.velocities);
     EXPECT_EQ(away.surfaces, plain.surfaces);
+    EXPECT_EQ(away.visited, plain.visited);
+    EXPECT_EQ(away.attributes, plain.attributes);
   }
 }
 
