@@ -87,6 +87,13 @@ TEST(ProjectionViscosity, WallsBearTheWeightOfWhatFlowsDownAlongThem) {
   EXPECT_NEAR(mean(s, "floor", "fy", 0.3), -mass * g, 0.01 * mass * g);
 }
 
+Vec3d middle_of(const Simulation& s) {
+  Vec3d sum{};
+  const auto found = s.particles("honey");
+  for (const Vec3f& x : found.position) sum += static_cast<Vec3d>(x);
+  return sum / static_cast<double>(found.position.size());
+}
+
 /// A block of honey on a plane that rises by `degrees`, along which it slips: how far it goes over
 /// what it would without friction, and how far it is from the plane over where it lay.
 struct Slide {
@@ -109,15 +116,9 @@ Slide slide(double degrees, double t, const std::string& type) {
                       degrees, 0.45 - up.x * 0.2, 0.25 - up.y * 0.2, middle.x, middle.y, type),
           "slide.yaml"),
       quiet(2));
-  const auto center = [&] {
-    Vec3d sum{};
-    const auto found = s.particles("honey");
-    for (const Vec3f& x : found.position) sum += static_cast<Vec3d>(x);
-    return sum / static_cast<double>(found.position.size());
-  };
-  const Vec3d start = center();
+  const Vec3d start = middle_of(s);
   s.advance_to(t);
-  const Vec3d gone = center() - start;
+  const Vec3d gone = middle_of(s) - start;
   return {dot(gone, down) / (0.5 * g * std::sin(angle) * s.time() * s.time()), dot(gone, up)};
 }
 
@@ -128,6 +129,26 @@ TEST(ProjectionViscosity, HoneySlidesDownASlopeThatItSlipsAlongAsFastAsItFalls) 
     EXPECT_NEAR(slips.height, 0, 0.002) << degrees << ", a fifth of a cell";
   }
   EXPECT_LT(slide(30, 0.15, "stick").way, 0.2);
+}
+
+TEST(ProjectionViscosity, HoneyFallsFromACeilingThatItMayLeaveAndHangsOnOneThatItSlipsAlong) {
+  const auto fallen = [](const std::string& type) {
+    Simulation s(
+        parse_scene("dreampm: 1\nname: hang\nspace: {max: [0.2, 0.32, 0.2], spacing: 0.005}\ntime: {fps: 100, solver: "
+                    "projection}\nmaterials: {honey: {type: newtonian, density: 1400, viscosity: 100}}\ncolliders: "
+                    "{top: {type: " +
+                        type +
+                        ", shape: {box: {min: [0.02, 0.2537, 0.02], max: [0.18, 0.3, 0.18]}}}}\nbodies: {honey: "
+                        "{material: honey, sample: {pattern: jitter}, shape: {box: {min: [0.05, 0.1737, 0.05], max: "
+                        "[0.15, 0.2537, 0.15]}}}}\n",
+                    "hang.yaml"),
+        quiet(2));
+    const double start = middle_of(s).y;
+    s.advance_to(0.15);
+    return (start - middle_of(s).y) / (0.5 * g * s.time() * s.time());
+  };
+  EXPECT_GT(fallen("separate"), 0.9);
+  EXPECT_LT(fallen("slip"), 0.3);
 }
 
 /// How fast a ball sinks or rises in syrup along the axis of a tube that holds the syrup [m/s].
