@@ -39,7 +39,7 @@ template <class R>
 struct FourOfNode {
   Four<R> v;
   FourOfNode() = default;
-  FourOfNode(Four<R> all) : v(all) {}
+  FourOfNode(const Four<R>& all) : v(all) {}
   FourOfNode(R x, R y, R z, R m) : v{x, y, z, m} {}
   friend FourOfNode operator+(const FourOfNode& a, const FourOfNode& b) { return a.v + b.v; }
   friend FourOfNode operator-(const FourOfNode& a, const FourOfNode& b) { return a.v - b.v; }

@@ -120,14 +120,14 @@ std::vector<std::vector<std::uint32_t>> take_out(World<R>& world, bool far) {
       std::vector<std::uint32_t>& gone = all[s];
       found.assign(near.size(), {});
       parallel_for(near.size(), 1, [&](std::size_t i) { found[i] = taken_of(world, set, near[i], mouth, gone); });
-      const auto before = static_cast<std::ptrdiff_t>(gone.size());
+      const std::size_t before = gone.size();
       for (const std::vector<Taken>& some : found)
         for (const Taken& one : some) {
           gone.push_back(one.number);
           sink.momentum += one.momentum, sink.angular += one.angular;
         }
-      sink.taken += gone.size() - static_cast<std::size_t>(before);
-      std::inplace_merge(gone.begin(), gone.begin() + before, gone.end());
+      sink.taken += gone.size() - before;
+      std::sort(gone.begin(), gone.end());
     }
   }
   return all;

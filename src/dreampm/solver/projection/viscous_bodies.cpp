@@ -19,8 +19,8 @@ void ViscousBodies<R>::add_cells(const BodyPressure<R>& pressed, const SurfaceSt
     for (const auto& cell : pressed.cells())
       if (surfaces.kappa(cell.place) > R(0)) cells_.push_back(cell);
     // One a body for each cell, of all of its faces.
-    std::stable_sort(cells_.begin(), cells_.end(), [](const auto& a, const auto& b) {
-      return std::tie(a.place, a.body) < std::tie(b.place, b.body);
+    std::sort(cells_.begin(), cells_.end(), [](const auto& a, const auto& b) {
+      return std::tie(a.place, a.body, a.column) < std::tie(b.place, b.body, b.column);
     });
     std::size_t kept = 0;
     for (std::size_t n = 0; n < cells_.size(); ++n)
