@@ -21,7 +21,7 @@
 #   make blender      the extension for Blender 4.2 and newer: build/dreampm-blender-VERSION.zip
 #   make test-blender   the extension within Blender: pip fetches bpy, 0.4 GB, once
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
-# Variables: CXX (default g++), TEST_JOBS (tests at once, default 3: some wait for others), MODEL (make demo MODEL=FILE or asset:knot: in place
+# Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
 .PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender check format clean
@@ -33,7 +33,7 @@ ifeq ($(origin CXX),default)
 CXX := g++
 endif
 PYTHON := /usr/bin/python3
-TEST_JOBS ?= 3
+TEST_JOBS ?= 2
 CONFIGURE = cmake -DPython3_EXECUTABLE=$(PYTHON)
 NINJA = ninja -j$(shell nproc)
 CTEST = ctest --output-on-failure -j$(TEST_JOBS)
