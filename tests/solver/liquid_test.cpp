@@ -78,7 +78,7 @@ TEST(Liquid, DrivenSlabKeepsItsDepth) {
 // The same slab, as a control: it swells by a tenth.
 TEST(Liquid, WithoutRelaxationAndPullingItDoesNot) {
   const double change = driven(32, 4, 0, 1);
-  std::printf("driven slab without anchoring, pulling: depth %+.2f %%\n", 100 * change);
+  std::printf("driven slab without relaxation, pulling: depth %+.2f %%\n", 100 * change);
   EXPECT_GE(std::abs(change), 0.05);
 }
 
