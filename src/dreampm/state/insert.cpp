@@ -6,6 +6,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/column_room.h"
 #include "dreampm/state/grid_topology.h"
+#include "dreampm/state/held_cells.h"
 #include "dreampm/state/regroup.h"
 
 namespace dreampm {
@@ -73,12 +74,7 @@ template <class R>
 std::vector<std::uint64_t> cells_of(const World<R>& world) {
   std::vector<std::uint64_t> cells(world.particle_blocks.size(), world.drift > 0 ? ~std::uint64_t{0} : 0);
   if (world.drift > 0) return cells;
-  const auto cell = [](R u) { return std::clamp(static_cast<int>(u), 0, block_width - 1); };
-  parallel_for(cells.size(), 16, [&](std::size_t b) {
-    for (const ParticleSet<R>& set : world.sets)
-      for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
-        cells[b] |= std::uint64_t{1} << node_index(cell(set.u[0][p]), cell(set.u[1][p]), cell(set.u[2][p]));
-  });
+  parallel_for(cells.size(), 16, [&](std::size_t b) { cells[b] = held_cells(world, b); });
   return cells;
 }
 

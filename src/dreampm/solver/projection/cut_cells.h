@@ -54,10 +54,7 @@ class CutCells {
   /// Calls body(ClosedFace) for those of a block, after `cut`.
   template <class Body>
   void for_closed(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
-    const auto found = blocks_.find(block);
-    if (found == blocks_.end() || !found->second) return;
-    const Block& cut = *found->second;
-    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+    for_cells(grid, block, [&](const Block& cut, std::size_t n, std::size_t place) {
       const Vec3i cell = node_offset(static_cast<int>(n));
       for (std::size_t a = 0; a < 3; ++a) {
         if (cut.owner[a][n] == grid.no_owner) continue;
@@ -78,10 +75,7 @@ class CutCells {
   /// Calls body(FilledCell) for those of a block, after `cut`.
   template <class Body>
   void for_filled(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
-    const auto found = blocks_.find(block);
-    if (found == blocks_.end() || !found->second) return;
-    const Block& cut = *found->second;
-    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+    for_cells(grid, block, [&](const Block& cut, std::size_t n, std::size_t place) {
       if (cut.filler[n] == grid.no_owner) return;
       body(FilledCell{block * block_width + node_offset(static_cast<int>(n)), place, static_cast<double>(cut.filled[n]),
                       cut.filler[n], static_cast<Vec3d>(cut.filled_middle[n])});
@@ -99,10 +93,7 @@ class CutCells {
   /// Calls body(FilledParts) for the cells of a block near colliders, after `cut`.
   template <class Body>
   void for_parts(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
-    const auto found = blocks_.find(block);
-    if (found == blocks_.end() || !found->second) return;
-    const Block& cut = *found->second;
-    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) {
+    for_cells(grid, block, [&](const Block& cut, std::size_t n, std::size_t place) {
       FilledParts parts{place, cut.filled[n], {}, {}, cut.filler[n]};
       for (std::size_t a = 0; a < 3; ++a)
         parts.face[a] = cut.filled_at_face[a][n], parts.edge[a] = cut.filled_at_edge[a][n];
@@ -155,6 +146,13 @@ class CutCells {
     std::array<std::uint16_t, block_nodes> filler;
     std::array<std::array<R, block_nodes>, 3> filled_at_face, filled_at_edge;  ///< as FilledParts
   };
+  /// Calls body(what is known of the block, n, place) for the cells of a block near colliders.
+  template <class Body>
+  void for_cells(const MacGrid<R>& grid, const Vec3i& block, const Body& body) const {
+    const auto found = blocks_.find(block);
+    if (found == blocks_.end() || !found->second) return;
+    grid.cells.for_block(block, [&](std::size_t n, std::size_t place) { body(*found->second, n, place); });
+  }
   /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
   static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);
   /// Null where no collider is.

@@ -3,44 +3,25 @@
 #include <algorithm>
 
 #include "dreampm/solver/projection/fill_field.h"
+#include "dreampm/state/held_cells.h"
 #include "dreampm/state/resize_for_overwrite.h"
 
 namespace dreampm {
 namespace {
 
-/// The cells of a block that hold particles, by their stencils: bit k of [i][j].
-template <class R>
-std::array<std::array<std::uint8_t, block_width>, block_width> held_cells(const World<R>& world, std::size_t b) {
-  std::array<std::uint8_t, block_nodes> held{};
-  for (const ParticleSet<R>& set : world.sets) {
-    if (set.size() == 0) continue;
-    const R *x = set.u[0].data(), *y = set.u[1].data(), *z = set.u[2].data();
-    for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p) {
-      // A place just before the end of its block may be rounded to that.
-      const auto at = [](R u) { return std::min(static_cast<int>(u), block_width - 1); };
-      held[static_cast<std::size_t>(node_index(at(x[p]), at(y[p]), at(z[p])))] = 1;
-    }
-  }
-  std::array<std::array<std::uint8_t, block_width>, block_width> bits{};
-  for (std::size_t n = 0; n < block_nodes; ++n) {
-    const Vec3i at = node_offset(static_cast<int>(n));
-    bits[static_cast<std::size_t>(at.x)][static_cast<std::size_t>(at.y)] |= static_cast<std::uint8_t>(held[n] << at.z);
-  }
-  return bits;
-}
-
 /// Marks the cells that matter gives enough to be liquid: those that a particle is between.
 template <class R>
 void mark_matter(const World<R>& world, CellRows& cells) {
   parallel_for(world.particle_blocks.size(), 16, [&](std::size_t b) {
-    const auto held = held_cells(world, b);
+    const std::uint64_t held = held_cells(world, b);
     const Vec3i first = first_stencil(world.particle_blocks[b]);
     for (int i = 0; i <= block_width; ++i)
       for (int j = 0; j <= block_width; ++j) {
+        // Bit k: cell k of a column.
         unsigned bits = 0;
         for (int x = std::max(i - 1, 0); x <= std::min(i, block_width - 1); ++x)
           for (int y = std::max(j - 1, 0); y <= std::min(j, block_width - 1); ++y)
-            bits |= held[static_cast<std::size_t>(x)][static_cast<std::size_t>(y)];
+            bits |= static_cast<unsigned>(held >> node_index(x, y, 0)) & 0xf;
         cells.mark(first + Vec3i{i, j, 0}, static_cast<std::uint8_t>(bits | bits << 1));
       }
   });

@@ -112,6 +112,16 @@ struct MacGrid {
     if (!field.empty()) cells.wrap(field.data());
   }
 
+  /// Whether a cell is liquid, and so are all that a face which is not closed leads to.
+  bool is_deep(const RowPlaces& at, std::size_t lane) const {
+    bool deep = depth[at.own + lane] > R(0);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const std::size_t above = at.high[a] + lane;
+      deep = deep && (depth[at.low[a] + lane] > R(0) || !(open[a][at.own + lane] > R(0)));
+      deep = deep && (depth[above] > R(0) || !(open[a][above] > R(0)));
+    }
+    return deep;
+  }
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
   /// Whether the middle of a face lies in a collider that holds liquids.
   bool is_in_holder(std::size_t axis, std::size_t face) const {

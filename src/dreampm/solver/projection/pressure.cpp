@@ -321,20 +321,14 @@ void extend_velocities(MacGrid<R>& grid) {
 
 template <class R>
 void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
-  const R* const d = grid.depth.data();
   constexpr R share = R(ProjectionNumbers::density_share), most = R(ProjectionNumbers::most_density);
   for_all_rows(std::span<const Row>(matrix.rows), [&](const Row&, const RowPlaces& at) {
     for (std::size_t l = 0; l < row_cells; ++l) {
       const std::size_t c = at.own + l;
-      bool deep = true;
-      for (std::size_t a = 0; a < 3; ++a) {
-        deep = deep && (d[at.low[a] + l] > R(0) || !(grid.open[a][c] > R(0)));
-        deep = deep && (d[at.high[a] + l] > R(0) || !(grid.open[a][at.high[a] + l] > R(0)));
-      }
       const bool cut = !grid.room.empty() && grid.room[c] < R(1);
       const R excess = cut ? cut_excess(grid, at, l) : grid.density[c] - R(1);
       const bool unknown = matrix.diagonal[c] > R(0);
-      matrix.b[c] = unknown && (excess > R(0) || deep) ? std::clamp(share * excess, -most, most) : R(0);
+      matrix.b[c] = unknown && (excess > R(0) || grid.is_deep(at, l)) ? std::clamp(share * excess, -most, most) : R(0);
       // What lies beside the liquid keeps its volume by itself, and a little liquid in it gets out.
       if (!grid.solid_volume.empty() && grid.density[c] > R(0)) {
         const R liquid = 1 - grid.solid_volume[c] / grid.density[c];

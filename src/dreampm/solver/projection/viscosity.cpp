@@ -51,12 +51,7 @@ template <class R>
 R liquid_in(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
   const std::size_t c = at.own + l;
   if (!grid.solid_volume.empty()) return std::max(grid.density[c] - grid.solid_volume[c], R(0));
-  bool deep = grid.depth[c] > R(0);
-  for (std::size_t a = 0; a < 3; ++a) {
-    deep = deep && (grid.depth[at.low[a] + l] > R(0) || !(grid.open[a][c] > R(0)));
-    deep = deep && (grid.depth[at.high[a] + l] > R(0) || !(grid.open[a][at.high[a] + l] > R(0)));
-  }
-  return deep ? R(1) : grid.density[c];
+  return grid.is_deep(at, l) ? R(1) : grid.density[c];
 }
 
 }  // namespace
@@ -85,13 +80,13 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
   });
   grid.wrap(liquid_);
   const R s = static_cast<R>(diffusion);
-  const bool slips = surfaces_.any();
-  const auto left_of_cell = [&](std::size_t c) { return slips ? surfaces_.in_cell(c) : R(1); };
+  const bool cut = surfaces_.any();
+  const auto left_of_cell = [&](std::size_t c) { return cut ? surfaces_.in_cell(c) : R(1); };
   // Faces within a collider along which the liquid slips are those of the flow before it, where one
   // of their cells is not all within.
   const auto goes_on = [&](const Row& row, std::size_t a, const RowPlaces& at, std::size_t l) {
     const std::size_t f = at.own + l;
-    if (!slips || !(surfaces_.closed(grid, a, f) > R(0))) return false;
+    if (!cut || !(surfaces_.closed(grid, a, f) > R(0))) return false;
     const Vec3i cell = row.first + Vec3i{0, 0, static_cast<std::int32_t>(l)};
     for (int t = 0; t < 3; ++t)
       if (!grid.within(t, cell[t]) || (t == static_cast<int>(a) && cell[t] == grid.low[t])) return false;
@@ -109,7 +104,7 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
           if (!closed) grid.free[a][f] = velocity_[a][f];
         } else if (is_known(grid.free[a][f]) || inner) {
           R mass = (liquid_[f] + liquid_[below]) / 2;
-          if (slips && surfaces_.at_face(a, f) < R(1)) {
+          if (cut && surfaces_.at_face(a, f) < R(1)) {
             const R own = surfaces_.in_cell(f), other = surfaces_.in_cell(below);
             mass = surfaces_.at_face(a, f) * (own * liquid_[f] + other * liquid_[below]) /
                    std::max(own + other, static_cast<R>(least_face_mass));
@@ -158,11 +153,11 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
           R mass = mass_[along[n]][faces[n]];
           if (!grid.solid_sums[0].empty()) mass -= grid.solid_sums[along[n]][faces[n]].weight;
           held += std::clamp(mass, R(0), R(1)) / 4;
-          if (slips) left += surfaces_.at_face(along[n], faces[n]) / 4;
+          if (cut) left += surfaces_.at_face(along[n], faces[n]) / 4;
           whole = whole && counts(along[n], faces[n]);
         }
         // Faces are a cell wide, and know less well than the edge what is left of it.
-        if (slips && surfaces_.at_edge(axis, c) != left)
+        if (cut && surfaces_.at_edge(axis, c) != left)
           held *= surfaces_.at_edge(axis, c) / std::max(left, static_cast<R>(least_face_mass));
         if (const int wall = std::max(walls[0], walls[1]); wall >= 0) {
           // The faces before the wall are half a cell from it: over half of a cell, twice the
@@ -185,7 +180,7 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
     }
   });
   for (std::size_t a = 0; a < 3; ++a) grid.wrap(normal_[a]), grid.wrap(shear_[a]);
-  if (slips) surfaces_.find_stiffness(world, grid, s, counts);
+  if (cut) surfaces_.find_stiffness(world, grid, s, counts);
   // The diagonal.
   for_all_rows(grid.cells.rows(), [&](const Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a)
@@ -200,8 +195,8 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
 template <class R>
 void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vector<Six>& bodies, bool moving, Faces& f,
                          std::vector<Six>& on_bodies) {
-  const bool slips = surfaces_.any();
-  if (slips) {
+  const bool cut = surfaces_.any();
+  if (cut) {
     surfaces_.find_stress(grid, u, moving);
     bodies_.add_flow(bodies, surfaces_);
     surfaces_.end_stress(grid);
@@ -228,7 +223,7 @@ void Viscosity<R>::force(const MacGrid<R>& grid, const Faces& u, const std::vect
       }
     }
   });
-  if (slips) surfaces_.add_force(grid, f);
+  if (cut) surfaces_.add_force(grid, f);
   bodies_.gather(f, surfaces_, on_bodies);
 }
 
