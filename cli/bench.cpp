@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "dreampm/pipeline/bench.h"
+#include "dreampm/pipeline/bench/edits.h"
 #include "dreampm/pipeline/bench/solvers.h"
 #include "verbs.h"
 
@@ -221,7 +222,7 @@ void add_frames(CLI::App& bench, Action& action) {
   verb->add_flag("--json", a->json, "print JSON");
   verb->callback([a, &action] {
     action = [a] {
-      const SceneDescription scene = a->scene.load();
+      const model::Scene scene = a->scene.load();
       const SolversCost c = bench_solvers(scene, a->frames);
       const double ratio = c.explicit_steps.cpu_seconds / c.projection.cpu_seconds;
       if (a->json) {
@@ -250,6 +251,34 @@ void add_frames(CLI::App& bench, Action& action) {
   });
 }
 
+void add_edits(CLI::App& bench, Action& action) {
+  struct Arguments {
+    EditBenchOptions options;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb =
+      add_verb(bench, "edits", "What edits of a running simulation cost: gravity, a parameter, a wall, a crate",
+               "dreampm bench edits --particles 100000");
+  verb->add_option("--particles", a->options.particles, "about how many")
+      ->capture_default_str()
+      ->transform(whole_number(1000, 100000000));
+  verb->add_option("--faces", a->options.faces, "about how many, of the mesh beside them")
+      ->capture_default_str()
+      ->transform(whole_number(100, 10000000));
+  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
+  verb->add_option("--rounds", a->options.rounds, "edits of each kind, of which the median counts")
+      ->capture_default_str()
+      ->transform(whole_number(1, 100000));
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] {
+    action = [a] {
+      print_rows(bench_edits(a->options), 1, a->json);
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
@@ -259,6 +288,7 @@ void add_bench(CLI::App& app, Action& action) {
   add_step(*bench, action);
   add_all(*bench, action);
   add_frames(*bench, action);
+  add_edits(*bench, action);
 #ifdef DM_APP
   add_bench_play(*bench, action);
 #endif

@@ -69,13 +69,13 @@ void print_json(const scene::ParseResult& result, const Preflight& p, const Stag
   print(json);
 }
 
-void print_text(const SceneDescription& scene, const Preflight& p, const StageEstimate& e) {
+void print_text(const model::Scene& scene, const Preflight& p, const StageEstimate& e) {
   const Vec3i cells = scene.space.cells();
   const std::string inflow = p.inflow > 0 ? fmt::format(", and up to {} come in", grouped(p.inflow)) : "";
   fmt::print("{}: {} particles{}, {} frames at {} a second\n", scene.name, grouped(p.particles), inflow,
              scene.time.frames, scene.time.fps);
   fmt::print("  space     {} x {} x {} cells of {:.6g} m, up to [{:.10g}, {:.10g}, {:.10g}]\n", cells.x, cells.y,
-             cells.z, p.dx, scene.space.max.x, scene.space.max.y, scene.space.max.z);
+             cells.z, p.dx, scene.space.end().x, scene.space.end().y, scene.space.end().z);
   std::string axes;
   for (std::size_t a = 0; a < 3; ++a)
     if (scene.space.periodic[a]) axes += fmt::format("{}{}", axes.empty() ? "" : ", ", "xyz"[a]);

@@ -10,7 +10,7 @@ struct MakeArguments {
 };
 
 int make_all(const MakeArguments& a) {
-  SceneDescription scene = a.scene.load();
+  model::Scene scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
   if (!a.model.empty()) replace_model(scene, a.model);
   const std::filesystem::path folder = scene.output.folder;

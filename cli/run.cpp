@@ -12,7 +12,7 @@ struct RunArguments {
 };
 
 int simulate_scene(const RunArguments& a) {
-  SceneDescription scene = a.scene.load();
+  model::Scene scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
   SimulateOptions options;
   options.folder = scene.output.folder;

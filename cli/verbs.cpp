@@ -47,7 +47,7 @@ scene::ParseResult SceneArguments::parse() const {
   return scene::parse_scene(file, {.variant = variant, .overrides = overrides, .assets = asset_names()});
 }
 
-SceneDescription SceneArguments::load() const {
+model::Scene SceneArguments::load() const {
   scene::ParseResult result = parse();
   std::string errors;
   for (const scene::Problem& p : result.problems)

@@ -53,7 +53,7 @@ struct SceneArguments {
   void add_to(CLI::App& verb);
   scene::ParseResult parse() const;
   /// The scene; its warnings are logged. Throws InputError with every error on a line of its own.
-  SceneDescription load() const;
+  model::Scene load() const;
   SceneSource source() const;
 };
 

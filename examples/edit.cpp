@@ -30,12 +30,12 @@ int main() try {
   simulation.advance_to(0.5);
   print("honey", simulation);
 
-  simulation.add({"ball", "rubber", dreampm::SceneShape::sphere({0.3, 0.3, 0.1}, 0.05), {0, -1, 0}});
+  simulation.add({"ball", "rubber", dreampm::Shape::sphere({0.3, 0.3, 0.1}, 0.05), {0, -1, 0}});
   simulation.set_gravity({-3, -9, 0});
   simulation.advance_to(0.8);
   print("with a ball", simulation);
 
-  const std::size_t taken = simulation.remove(dreampm::SceneShape::box({0, 0, 0}, {0.1, 0.4, 0.2}));
+  const std::size_t taken = simulation.remove(dreampm::Shape::box({0, 0, 0}, {0.1, 0.4, 0.2}));
   std::printf("%zu particles taken out\n", taken);
   simulation.advance_to(1.0);
   print("flows back", simulation);

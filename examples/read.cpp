@@ -18,7 +18,7 @@ rigid:
 
 int main() try {
   dreampm::Simulation simulation(dreampm::parse_scene(scene, "tank"));
-  simulation.set_wall(dreampm::Side::x_max, "separate", 0.2);
+  simulation.set_wall(dreampm::Side::x_max, {dreampm::WallType::separate, 0.2});
   simulation.advance_to(1);
 
   const dreampm::Names names = simulation.names();

@@ -28,7 +28,8 @@ def main():
             return
         x, z = chance.uniform((0.05, 0.05), (0.35, 0.25))
         drops += 1
-        sim.add(f"drop{drops}", "water", dm.sphere((x, 0.42, z), chance.uniform(0.02, 0.03)), velocity=(0, -1.5, 0))
+        drop = dm.sphere((x, 0.42, z), chance.uniform(0.02, 0.03))
+        sim.add(dm.model.Body(f"drop{drops}", "water", drop, velocity=(0, -1.5, 0)))
 
     for frame in sim.frames(50):
         if frame.frame % 10 == 1:

@@ -5,38 +5,11 @@
 #include <string>
 #include <string_view>
 
+#include "dreampm/model/colliders.h"
 #include "dreampm/pose.h"
-#include "dreampm/shape.h"
 #include "dreampm/vec.h"
 
 namespace dreampm {
-
-/// A rigid body that is added to a simulation.
-struct NewRigid {
-  std::string name;  ///< not yet in use, by materials and colliders neither
-  SceneShape shape;
-  double density = 1000;            ///< kg/m^3, from 0.1 to 30000
-  std::optional<Vec3d> position{};  ///< m, of the middle of its shape; absent: where the shape says
-  Vec3d velocity{};                 ///< m/s
-  Vec3d spin{};                     ///< rad/s about its center of mass
-  double friction = 0.4;            ///< Coulomb's coefficient, 0 to 100
-  double restitution = 0;           ///< of impacts, 0 to 1
-  /// What stands behind its name in `render.looks` of a scene file; empty: as scenes have it
-  /// without.
-  std::string look{};
-};
-
-/// A collider that is added to a simulation.
-struct NewCollider {
-  std::string name;  ///< not yet in use, by materials neither
-  SceneShape shape;
-  std::string type = "separate";  ///< what its surface does to matter: separate, slip or stick
-  double friction = 0;            ///< Coulomb's coefficient, 0 to 100
-  std::string look{};             ///< as in NewRigid
-  /// Cells that it moves between two looks at where its surface is, above 0 to 0.25: each look
-  /// takes as long as many steps. Matter feels the velocity of every step.
-  double slack = 0.02;
-};
 
 /// A point of a rigid body that is drawn to a point that stands, by a damped spring. It is
 /// implicit: no stiffness makes a step too long.
@@ -57,10 +30,10 @@ struct ColliderState {
   /// N: what matter pressed it with, on average over the steps of the last call that took any; 0
   /// after `restore`, and after colliders came or went.
   Vec3d force{};
-  std::string_view type = "separate";  ///< what its surface does to matter: separate, slip or stick
+  WallType type = WallType::separate;  ///< what its surface does to matter
   double friction = 0;                 ///< Coulomb's coefficient
   double restitution = 0;              ///< of impacts, 0 to 1, of a rigid body; 0 of other colliders
-  double slack = 0;                    ///< cells, as in NewCollider
+  double slack = 0;                    ///< cells, as `set_slack` has them
   bool is_rigid = false;               ///< whether it is a rigid body
   bool moves = false;                  ///< whether it may stand elsewhere than in the scene
   bool deforms = false;                ///< whether its shape changes

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "dreampm/shape.h"
+#include "dreampm/model/matter.h"
 #include "dreampm/vec.h"
 
 namespace dreampm {
@@ -42,16 +42,6 @@ struct MaterialState {
   double sound_speed = 0;          ///< m/s, at rest
   double kinematic_viscosity = 0;  ///< m^2/s, what bounds a step; 0 where the law solves it implicitly
   double poissons_ratio = 0;       ///< of small elastic strains [1]; 1/2 where volume alone resists
-};
-
-/// Matter that is added to a simulation.
-struct NewBody {
-  std::string name;      ///< not yet in use
-  std::string material;  ///< of the scene
-  SceneShape shape;
-  Vec3d velocity{};              ///< m/s
-  Vec3d spin{};                  ///< rad/s about the body's center
-  std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 
 /// Which particles came in as a body, whatever became of them since.

@@ -17,6 +17,7 @@
 #include "dreampm/error.h"
 #include "dreampm/host.h"
 #include "dreampm/matter.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/particles.h"
 #include "dreampm/pose.h"
 #include "dreampm/reports.h"
@@ -150,9 +151,9 @@ class Simulation {
   /// All particles that are there have ids below this one, and those that come in later do not.
   std::uint32_t next_id() const;
 
-  /// Fills a shape with a material of the scene. Throws InputError for a body that reaches outside
-  /// of walls or into colliders.
-  void add(const NewBody& body);
+  /// Fills a shape with a material of the scene. Throws InputError for what `check` would not take,
+  /// a name in use, and a body that reaches outside of walls or into colliders.
+  void add(const model::Body& body);
   BodyState body(std::string_view name) const;
   /// Particles of a material of the scene at these places [m], all at one velocity [m/s],
   /// undeformed. They count as entered, and belong to no body. Where matter is already it is there
@@ -162,7 +163,7 @@ class Simulation {
   /// The same, each with a velocity and its gradient.
   void add_particles(std::string_view material, std::span<const NewParticle> particles);
   /// Takes out all particles whose centers lie inside; returns how many.
-  std::size_t remove(const SceneShape& region);
+  std::size_t remove(const Shape& region);
 
   // ---- materials
 
@@ -176,11 +177,10 @@ class Simulation {
   /// What a material comes to as it stands; or, with other values of some of its parameters, as it
   /// would be. Nothing is changed. Throws InputError for a key that the material has not.
   MaterialState material(std::string_view name, std::span<const ParameterValue> with = {}) const;
-  /// A material more, of which there is no particle yet; `text`: what stands behind its name in the
-  /// `materials` of a scene file, as "{type: newtonian, preset: honey}", `look`: behind it in
-  /// `render.looks`; empty: as scenes have it without. Throws InputError for a name that the scene
-  /// has, and as a scene file does.
-  void add_material(const std::string& name, const std::string& text, const std::string& look = {});
+  /// A material more, of which there is no particle yet. Without a look it has that of scenes which
+  /// say none. Throws InputError for a name that the scene has, and for what `check` would not
+  /// take.
+  void add_material(const model::Material& material, const std::optional<model::Look>& look = {});
   /// All particles of one material, and what its emitters give from now on, become another's:
   /// positions, velocities and ids stay, the deformation is forgotten. They count as removed and
   /// entered. Returns how many.
@@ -194,10 +194,9 @@ class Simulation {
   /// m/s^2, from now on; replaces keyframes.
   void set_gravity(const Vec3d& gravity);
   Vec3d gravity() const;  ///< m/s^2, now
-  /// `type`: separate, slip, stick or open; `friction`: Coulomb's coefficient, >= 0. Not on
-  /// periodic axes.
-  void set_wall(Side side, std::string_view type, double friction = 0);
-  WallState wall(Side side) const;
+  /// Throws InputError on periodic axes, which have no walls.
+  void set_wall(Side side, const Wall& wall);
+  Wall wall(Side side) const;
 
   // ---- colliders and rigid bodies
 
@@ -212,16 +211,16 @@ class Simulation {
   /// velocity of the surface, and steps get as short as it needs. A bulk modulus that the scene
   /// leaves to be derived does not know of it. Throws InputError for numbers that are not finite.
   void set_motion(std::string_view collider, const Twist& motion);
-  /// As in NewCollider: cells, above 0 to 0.25, from its next move on. Changes no force.
+  /// Cells that it moves between two looks at where its surface is, above 0 to 0.25, from its next
+  /// move on: each look takes as long as many steps. Matter feels the velocity of every step. 0.02
+  /// at first.
   void set_slack(std::string_view collider, double slack);
-  /// A rigid body more, which falls, floats and meets the others from the next step on. Throws
-  /// InputError for what a scene file would not take, a name in use, and a body that reaches
-  /// outside of walls, into colliders or other bodies, or into matter, by more than a tenth of a
-  /// cell.
-  void add_rigid(const NewRigid& body);
-  /// Throws InputError for a name that no rigid body has, or that a probe or a cut of the scene
-  /// goes by.
-  void remove_rigid(std::string_view name);
+  /// A collider more. A rigid body falls, floats and meets the others from the next step on; others
+  /// stand until `set_motion`. Without a look it has that of scenes which say none. Throws
+  /// InputError for what `check` would not take, a name in use, one that lies in matter by more
+  /// than a tenth of a cell, and a rigid body that reaches as far outside of walls, into colliders
+  /// or other bodies.
+  void add(const model::Collider& collider, const std::optional<model::Look>& look = {});
   /// Holds a rigid body at a point from now on, until another grip of it or `let_go`. Throws
   /// InputError for a name that no rigid body has, or numbers out of range.
   void hold(std::string_view rigid, const Grip& grip);
@@ -229,12 +228,8 @@ class Simulation {
   /// Nothing happens where it is not held. Throws InputError for a name that no rigid body has.
   void let_go(std::string_view rigid);
   void let_go();  ///< of all
-  /// A collider more, which stands until `set_motion`. It may lie anywhere but in matter and rigid
-  /// bodies, as far as those are rather than a tenth of a cell deep in it: throws InputError for
-  /// that, and as `add_rigid`.
-  void add_collider(const NewCollider& collider);
-  /// Throws InputError for a name that no collider has, one of a rigid body or pin, or one that a
-  /// probe, sink or cut of the scene goes by.
+  /// A rigid body or another one. Throws InputError for a name that none has, one of a pin, or one
+  /// that a probe, sink or cut of the scene goes by.
   void remove_collider(std::string_view name);
 
   // ---- brushes

@@ -1,21 +1,41 @@
 // The walls of a simulation's box.
 #pragma once
 #include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <string_view>
 
 namespace dreampm {
 
 /// A wall of the box; y_min is the floor.
 enum class Side { x_min, x_max, y_min, y_max, z_min, z_max };
+constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
 
 /// As scene files have them, in the order of Side.
 inline constexpr std::array<std::string_view, 6> side_names{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max"};
 
-/// What a wall does to matter.
-struct WallState {
-  std::string_view type;       ///< separate, slip, stick or open; open on periodic axes
-  double friction = 0;         ///< Coulomb's coefficient, at least 0
+/// The wall of that name, `floor` and `ceiling` too.
+constexpr std::optional<Side> side_called(std::string_view name) {
+  if (name == "floor") return Side::y_min;
+  if (name == "ceiling") return Side::y_max;
+  for (std::size_t s = 0; s < side_names.size(); ++s)
+    if (side_names[s] == name) return static_cast<Side>(s);
+  return std::nullopt;
+}
+
+/// What a surface does to matter. open: no wall; separate: matter may leave, and must not enter;
+/// slip: it neither enters nor leaves; stick: it moves with the wall.
+enum class WallType : std::uint8_t { separate, slip, stick, open };
+
+/// As scene files have them, in the order of WallType.
+inline constexpr std::array<std::string_view, 4> wall_type_names{"separate", "slip", "stick", "open"};
+
+struct Wall {
+  WallType type = WallType::separate;
+  double friction = 0;         ///< Coulomb's coefficient, 0 to 100; of separate and slip
   bool skin_friction = false;  ///< whether it slows liquids as a smooth wall with a boundary layer does
+  bool operator==(const Wall&) const = default;
 };
 
 }  // namespace dreampm

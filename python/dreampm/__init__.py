@@ -11,18 +11,19 @@ logging.getLogger("dreampm").
 """
 from ._dreampm import (
     BodyState, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, Grip, InputError, Material,
-    Materials, MaterialState, Mesh, Motion, Names, NearCollider, NumericalFailure, ParticleCounts, Particles,
+    Materials, MaterialState, Mesh, Names, NearCollider, NumericalFailure, ParticleCounts, Particles,
     ParticleSets, Pose, RayHit, RunError, Scene, Shape, Simulation, Snapshot, Stepping, StepReport, Stroke, Totals,
-    Wall, Walls, box, cast_ray, colliders_near, contacts, cylinder, make, refused_parts, render, sphere, validate,
-    version as __version__, write_png)
+    Twist, Walls, box, cast_ray, check, colliders_near, contacts, cylinder, make, mesh, plane, preset,
+    refused_parts, render, sphere, validate, version as __version__, write_png)
+from . import model
 
 __all__ = [
     "BodyState", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent", "Frames", "Grip",
-    "InputError", "Material", "MaterialState", "Materials", "Mesh", "Motion", "Names", "NearCollider",
+    "InputError", "Material", "MaterialState", "Materials", "Mesh", "Names", "NearCollider",
     "NumericalFailure", "ParticleCounts", "ParticleSets", "Particles", "Pose", "RayHit", "RunError", "Scene", "Shape",
-    "Simulation", "Snapshot", "StepReport", "Stepping", "Stroke", "Totals", "Wall", "Walls", "__version__", "box",
-    "cast_ray", "colliders_near", "contacts", "cylinder", "make", "refused_parts", "render", "sphere", "validate",
-    "write_png"]
+    "Simulation", "Snapshot", "StepReport", "Stepping", "Stroke", "Totals", "Twist", "Walls", "__version__", "box",
+    "cast_ray", "check", "colliders_near", "contacts", "cylinder", "make", "mesh", "model", "plane", "preset",
+    "refused_parts", "render", "sphere", "validate", "write_png"]
 
 # Names in messages and in help() are those that a program writes.
 for _name in __all__:

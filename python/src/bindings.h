@@ -5,6 +5,7 @@
 namespace dreampm::python {
 
 void bind_values(nanobind::module_& module);      ///< reports, poses, shapes, snapshots
+void bind_model(nanobind::module_& module);       ///< dreampm.model
 void bind_scene(nanobind::module_& module);       ///< Scene
 void bind_matter(nanobind::module_& module);      ///< Particles, Mesh, write_png
 void bind_parts(nanobind::module_& module);       ///< materials, walls and colliders of a simulation

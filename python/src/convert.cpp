@@ -71,9 +71,9 @@ std::vector<Vec3d> points_of(nb::handle points, const char* name) {
   return all;
 }
 
-SceneShape shape_of(nb::handle shape) {
-  if (nb::isinstance<SceneShape>(shape)) return nb::cast<SceneShape>(shape);
-  return SceneShape::yaml(yaml_of(shape));
+Shape shape_of(nb::handle shape) {
+  if (nb::isinstance<Shape>(shape)) return nb::cast<Shape>(shape);
+  return parse_shape(yaml_of(shape));
 }
 
 std::string shown(nb::handle object, const char* name, const std::vector<const char*>& attributes) {

@@ -107,7 +107,7 @@ std::string yaml_of(nb::handle value);
 std::vector<std::string> set_words(nb::handle set);
 
 /// A Shape, a dict as scene files have it behind `shape:`, or its text.
-SceneShape shape_of(nb::handle shape);
+Shape shape_of(nb::handle shape);
 
 /// "Name(a=1, b=2)" of the attributes named.
 std::string shown(nb::handle object, const char* name, const std::vector<const char*>& attributes);

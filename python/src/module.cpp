@@ -9,6 +9,7 @@ NB_MODULE(_dreampm, m) {
   m.attr("version") = dreampm::version;
   python::bind_errors(m);
   python::bind_values(m);
+  python::bind_model(m);
   python::bind_scene(m);
   python::bind_matter(m);
   python::bind_parts(m);

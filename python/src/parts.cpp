@@ -1,4 +1,5 @@
 #include "parts.h"
+#include "model_members.h"
 
 #include <nanobind/ndarray.h>
 
@@ -178,33 +179,26 @@ void bind_particle_sets(nb::module_& m) {
 
 // ---- walls
 
-WallState wall(const Walls& part, const std::string& name) {
+Wall wall(const Walls& part, const std::string& name) {
   const auto side = static_cast<Side>(number_of(part, name, "wall"));
   return part.held().look([&](const Simulation& s) { return s.wall(side); });
 }
 
 void set_wall(const Walls& part, const std::string& name, nb::handle value) {
   const auto side = static_cast<Side>(number_of(part, name, "wall"));
-  std::string type;
-  double friction = 0;
-  if (nb::isinstance<WallState>(value))
-    type = nb::cast<const WallState&>(value).type, friction = nb::cast<const WallState&>(value).friction;
+  Wall wall;
+  if (nb::isinstance<Wall>(value))
+    wall = nb::cast<Wall>(value);
   else if (nb::isinstance<nb::str>(value))
-    type = nb::cast<std::string>(value);
+    wall.type = Member<WallType>::from(value, "a wall's type");
   else if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 2)
-    type = nb::cast<std::string>(value[0]), friction = nb::cast<double>(value[1]);
+    wall.type = Member<WallType>::from(value[0], "a wall's type"), wall.friction = nb::cast<double>(value[1]);
   else
     throw nb::type_error("a wall is a type, as 'slip', or a type with its friction, as ('separate', 0.3)");
-  part.held().call([&](Simulation& s) { s.set_wall(side, type, friction); });
+  part.held().call([&](Simulation& s) { s.set_wall(side, wall); });
 }
 
 void bind_walls(nb::module_& m) {
-  nb::class_<WallState> one(m, "Wall", "A wall of the box.");
-  one.def_ro("type", &WallState::type, "separate, slip, stick or open.")
-      .def_ro("friction", &WallState::friction, "Coulomb's coefficient, >= 0.")
-      .def_ro("skin_friction", &WallState::skin_friction,
-              "Whether it slows liquids as a smooth wall with a boundary layer does.")
-      .def("__repr__", [](nb::handle self) { return shown(self, "Wall", {"type", "friction"}); });
   nb::class_<Walls> all(
       m, "Walls",
       "The walls of a simulation's box: x_min, x_max, y_min (the floor), y_max, z_min, z_max.\n"
@@ -213,7 +207,7 @@ void bind_walls(nb::module_& m) {
       nb::type_slots(part_slots));
   all.def("__getitem__", wall)
       .def("__setitem__", set_wall, nb::arg("name"), nb::arg("wall"),
-           nb::sig("def __setitem__(self, name: str, wall: str | tuple[str, float] | Wall) -> None"));
+           nb::sig("def __setitem__(self, name: str, wall: str | tuple[str, float] | model.Wall) -> None"));
   as_mapping(all);
 }
 
@@ -235,7 +229,8 @@ void bind_colliders(nb::module_& m) {
           "force", [](const ColliderPart& part) { return state_of(part).force; },
           "N: what matter pressed it with, on average over the steps of the last call.")
       .def_prop_ro(
-          "type", [](const ColliderPart& part) { return state_of(part).type; },
+          "type",
+          [](const ColliderPart& part) { return wall_type_names.at(static_cast<std::size_t>(state_of(part).type)); },
           "What its surface does to matter: separate, slip or stick.")
       .def_prop_ro(
           "friction", [](const ColliderPart& part) { return state_of(part).friction; }, "Coulomb's coefficient.")
@@ -261,8 +256,8 @@ void bind_colliders(nb::module_& m) {
           [](const ColliderPart& part, const Twist& motion) {
             part.held().call([&](Simulation& s) { s.set_motion(part.name, motion); });
           },
-          "How it moves from the next step on, until another motion is set: Motion(velocity=, spin=, center=);\n"
-          "Motion() stops it where it is.")
+          "How it moves from the next step on, until another motion is set: Twist(velocity=, spin=, center=);\n"
+          "Twist() stops it where it is.")
       .def("__repr__", [](nb::handle self) { return shown(self, "Collider", {"name", "pose", "motion"}); });
   nb::class_<Colliders> all(m, "Colliders", "The colliders and rigid bodies of a simulation by name.",
                             nb::type_slots(part_slots));

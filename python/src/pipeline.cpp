@@ -6,9 +6,9 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/host.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/pipeline/make.h"
 #include "dreampm/pipeline/replace_model.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/validate/report.h"
 #include "python_host.h"
 
@@ -33,7 +33,7 @@ nb::object make_film(const fs::path& file, const std::string& variant, nb::objec
   nb::module_::import_("dreampm._video").attr("find_ffmpeg")();
   const fs::path film = work([&] {
     std::vector<std::string> warnings;
-    SceneDescription scene = load_scene(file, options, &warnings).description();
+    model::Scene scene = load_scene(file, options, &warnings).model();
     for (const std::string& w : warnings) current_host().warning(w);
     if (out) scene.output.folder = *out;
     if (model) replace_model(scene, *model);

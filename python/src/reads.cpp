@@ -6,6 +6,7 @@
 #include "convert.h"
 #include "dreampm/queries.h"
 #include "held.h"
+#include "structs.h"
 
 namespace dreampm::python {
 namespace {
@@ -64,12 +65,14 @@ void bind_states(nb::module_& m) {
       .def_ro("damping", &Grip::damping, "[N s/m]");
   show(grip, "Grip", {"at", "to", "stiffness", "damping"});
 
-  nb::class_<Stroke> stroke(m, "Stroke", "A brush that is down.");
-  stroke.def_ro("point", &Stroke::point, "Its middle [m].")
-      .def_ro("radius", &Stroke::radius, "[m]")
-      .def_ro("velocity", &Stroke::velocity, "Where to [m/s].")
-      .def_ro("rate", &Stroke::rate, "How fast matter at the middle comes to that velocity [1/s].");
-  show(stroke, "Stroke", {"point", "radius", "velocity", "rate"});
+  Struct<Stroke>(m, "Stroke",
+                 "A brush that is down: it takes along what lies within a sphere, the more the nearer to its\n"
+                 "middle.")
+      .member("point", &Stroke::point, "Its middle [m].")
+      .member("radius", &Stroke::radius, "[m], above 0.")
+      .member("velocity", &Stroke::velocity, "Where to [m/s].")
+      .member("rate", &Stroke::rate, "How fast matter at the middle comes to that velocity [1/s].")
+      .done();
 }
 
 nb::tuple corners(const Box3d& box) { return nb::make_tuple(box.min, box.max); }

@@ -5,6 +5,7 @@
 
 #include "bindings.h"
 #include "convert.h"
+#include "model_members.h"
 #include "python_host.h"
 
 namespace dreampm::python {
@@ -38,7 +39,13 @@ Scene parsed(const std::string& text, const std::string& file, const std::string
 Scene built(nb::object text, const std::string& file, const std::string& variant, nb::handle set,
             const nb::kwargs& sections) {
   if (text.is_none() == (sections.size() == 0))
-    throw nb::type_error("Scene(text), Scene(dict) or Scene(space=..., materials=..., bodies=...): one of them");
+    throw nb::type_error(
+        "Scene(model), Scene(text), Scene(dict) or Scene(space=..., materials=..., bodies=...): one of them");
+  if (nb::isinstance<model::Scene>(text)) {
+    if (!variant.empty() || !set.is_none())
+      throw nb::type_error("Scene(model): change the model; variant and set are of files");
+    return Scene(nb::cast<model::Scene>(text), file == "scene" ? "" : file);
+  }
   if (text.is_none()) return parsed(text_of(sections), file, variant, set);
   if (nb::isinstance<nb::str>(text)) return parsed(nb::cast<std::string>(text), file, variant, set);
   if (!nb::hasattr(text, "items"))
@@ -53,11 +60,12 @@ constexpr const char* about_scene =
     "          materials={'water': {'type': 'newtonian', 'preset': 'water'}},\n"
     "          bodies={'drop': {'material': 'water', 'shape': {'sphere': {'radius': 0.1}, 'center': [0.5, 0.5, "
     "0.5]}}})\n\n"
+    "A program may build one of structs, too: Scene(dreampm.model.Scene(...)).\n\n"
     "Sections and keys are those of scene files, and so are the errors: InputError names each with\n"
     "FILE:LINE:COLUMN. Of sections given as keywords the line counts sections.";
 
 constexpr const char* about_scene_init =
-    "text:     a scene file as a str, or its sections as a dict; or, without it, sections as keywords.\n"
+    "text:     a model.Scene, a scene file as a str, or its sections as a dict; or, without it, sections as keywords.\n"
     "          `dreampm: 1` and a name are put before sections that lack them.\n"
     "file:     stands for the file in messages; models are looked for in its folder.\n"
     "variant:  one of the scene's variants; empty: the scene as it stands.\n"
@@ -73,7 +81,8 @@ void bind_scene(nb::module_& m) {
              const nb::kwargs& sections) { new (self) Scene(built(text, file, variant, set, sections)); },
           nb::arg("text") = nb::none(), nb::kw_only(), nb::arg("file") = "scene", nb::arg("variant") = "",
           nb::arg("set") = nb::none(), nb::arg("sections"),
-          nb::sig("def __init__(self, text: str | dict[str, object] | None = None, *, file: str = 'scene', variant: "
+          nb::sig("def __init__(self, text: model.Scene | str | dict[str, object] | None = None, *, file: str = "
+                  "'scene', variant: "
                   "str = '', "
                   "set: dict[str, object] | list[str] | None = None, **sections: object) -> None"),
           about_scene_init)
@@ -100,6 +109,9 @@ void bind_scene(nb::module_& m) {
       .def_prop_ro("fps", &Scene::fps, "Frames a second of simulated time.")
       .def_prop_ro("frame_count", &Scene::frames, "Frame 1 is the start, frame n is at (n - 1)/fps.")
       .def_prop_ro("material_names", &Scene::materials)
+      .def_prop_ro(
+          "model", [](const Scene& s) { return model::Scene(s.model()); }, nb::sig("def model(self) -> model.Scene"),
+          "All that it says, as a copy that may be changed: Scene(model) checks it again.")
       .def("yaml", &Scene::yaml, "The whole scene as a scene file, every value explicit.")
       .def(
           "__reduce__",
@@ -113,6 +125,14 @@ void bind_scene(nb::module_& m) {
       .def("__repr__", [](nb::handle self) {
         return shown(self, "Scene", {"name", "file", "spacing", "fps", "frame_count", "material_names"});
       });
+  m.def(
+      "preset", [](const std::string& type, const std::string& name) { return preset(type, name); }, nb::arg("type"),
+      nb::arg("name"), nb::sig("def preset(type: str, name: str) -> model.Values"),
+      "The values of a preset, as `dreampm materials TYPE` lists them: preset('newtonian', 'honey').");
+  m.def(
+      "check", [](const model::Scene& model) { return check(model); }, nb::arg("model"),
+      nb::sig("def check(model: model.Scene) -> list[str]"),
+      "What is wrong with a scene that a program built, a line each, by path; reads no file.");
 }
 
 }  // namespace dreampm::python

@@ -7,6 +7,7 @@
 #include "dreampm/render.h"
 #include "held.h"
 #include "matter.h"
+#include "model_members.h"
 #include "parts.h"
 
 namespace dreampm::python {
@@ -226,21 +227,12 @@ void bind_state(nb::class_<Held>& c) {
            nb::arg("samples") = nb::none(), "The same as dreampm.render(sim).");
 }
 
-void add(Held& held, std::string name, std::string material, nb::handle shape, const Vector<"velocity">& velocity,
-         const Vector<"spin">& spin, const std::optional<Vector<"color">>& color) {
-  const NewBody body{std::move(name), std::move(material), shape_of(shape), velocity, spin, given(color)};
-  held.call([&](Simulation& s) { s.add(body); });
-}
-
 void bind_edits(nb::class_<Held>& c) {
-  c.def("add", add, nb::arg("name"), nb::arg("material"), nb::arg("shape"), nb::kw_only(),
-        nb::arg("velocity") = Vec3d{}, nb::arg("spin") = Vec3d{}, nb::arg("color") = nb::none(),
-        nb::sig("def add(self, name: str, material: str, shape: Shape | dict[str, object] | str, *, "
-                "velocity: numpy.typing.ArrayLike = (0, 0, 0), "
-                "spin: numpy.typing.ArrayLike = (0, 0, 0), "
-                "color: numpy.typing.ArrayLike | None = None) -> None"),
-        "Fills a shape with a material of the scene. name: not yet in use; velocity [m/s]; spin [rad/s] about\n"
-        "the body's center; color: sRGB, 0 to 1. Refuses a body that reaches outside of walls or into colliders.")
+  c.def(
+       "add", [](Held& h, const model::Body& body) { h.call([&](Simulation& s) { s.add(body); }); }, nb::arg("body"),
+       nb::sig("def add(self, body: model.Body) -> None"),
+       "Fills a shape with a material of the scene. Refuses a name in use, and a body that reaches outside of walls\n"
+       "or into colliders.")
       .def("add_particles", add_particles, nb::arg("material"), nb::arg("positions"), nb::kw_only(),
            nb::arg("velocity") = Vec3d{}, nb::arg("velocities") = nb::none(), nb::arg("gradients") = nb::none(),
            nb::sig("def add_particles(self, material: str, positions: numpy.typing.ArrayLike, *, velocity: "
@@ -253,34 +245,26 @@ void bind_edits(nb::class_<Held>& c) {
       .def(
           "remove",
           [](Held& h, nb::handle region) {
-            const SceneShape shape = shape_of(region);
+            const Shape shape = shape_of(region);
             return h.call([&](Simulation& s) { return s.remove(shape); });
           },
           nb::arg("region"), nb::sig("def remove(self, region: Shape | dict[str, object] | str) -> int"),
           "Takes out all particles whose centers lie inside; returns how many.")
       .def(
           "add_material",
-          [](Held& h, const std::string& name, nb::handle material, nb::handle look) {
-            const std::string text = yaml_of(material), looks = look.is_none() ? "" : yaml_of(look);
-            h.call([&](Simulation& s) { s.add_material(name, text, looks); });
+          [](Held& h, const model::Material& material, const std::optional<model::Look>& look) {
+            h.call([&](Simulation& s) { s.add_material(material, look); });
           },
-          nb::arg("name"), nb::arg("material"), nb::kw_only(), nb::arg("look") = nb::none(),
-          nb::sig("def add_material(self, name: str, material: dict[str, object] | str, *, look: dict[str, object] | "
-                  "str | None = None) -> None"),
-          "A material more, of which there is no particle yet: {'type': 'newtonian', 'preset': 'honey'}; look: as\n"
-          "in a scene's render.looks.")
+          nb::arg("material"), nb::kw_only(), nb::arg("look") = nb::none(),
+          nb::sig("def add_material(self, material: model.Material, *, look: model.Look | None = None) -> None"),
+          "A material more, of which there is no particle yet.")
       .def(
-          "brush",
-          [](Held& h, const std::string& name, const Vector<"point">& point, double radius,
-             const Vector<"velocity">& velocity, double rate) {
-            const Stroke stroke{point, radius, velocity, rate};
+          "set_brush",
+          [](Held& h, const std::string& name, const Stroke& stroke) {
             h.call([&](Simulation& s) { s.set_brush(name, stroke); });
           },
-          nb::arg("name"), nb::kw_only(), nb::arg("point"), nb::arg("radius"), nb::arg("velocity") = Vec3d{},
-          nb::arg("rate") = Stroke().rate,
-          "Takes along what lies within `radius` [m] of `point` [m], to `velocity` [m/s] at `rate` [1/s], the more "
-          "the\n"
-          "nearer to the middle; until another stroke of the same name, or `lift_brush`.")
+          nb::arg("name"), nb::arg("stroke"),
+          "Takes matter along until another stroke of the same name, or `lift_brush`.")
       .def(
           "lift_brush", [](Held& h, const std::string& name) { h.call([&](Simulation& s) { s.lift_brush(name); }); },
           nb::arg("name"), "Nothing happens where there is no such brush.");

@@ -3,6 +3,8 @@
 #include "convert.h"
 #include "dreampm/simulation.h"
 
+#include <nanobind/stl/filesystem.h>
+
 namespace dreampm::python {
 namespace {
 
@@ -62,7 +64,7 @@ void bind_motion(nb::module_& m) {
   show(pose, "Pose", {"position", "rotation"});
 
   nb::class_<Twist> motion(
-      m, "Motion", "How a rigid shape moves: its point x at velocity + spin x (x - center). All zero: at rest.");
+      m, "Twist", "How a rigid shape moves: its point x at velocity + spin x (x - center). All zero: at rest.");
   motion
       .def(
           "__init__",
@@ -79,32 +81,54 @@ void bind_motion(nb::module_& m) {
           "__eq__",
           [](const Twist& a, nb::handle b) { return nb::isinstance<Twist>(b) && a == nb::cast<const Twist&>(b); },
           nb::arg("other"), nb::sig("def __eq__(self, other: object) -> bool"));
-  show(motion, "Motion", {"velocity", "spin", "center"});
+  show(motion, "Twist", {"velocity", "spin", "center"});
 }
 
 void bind_shapes(nb::module_& m) {
-  nb::class_<SceneShape>(
+  nb::class_<Shape>(
       m, "Shape",
-      "A shape, as a scene file has it. `box`, `sphere` and `cylinder` make one; so does any text or\n"
-      "dict that may stand behind `shape:`, as {'mesh': 'bunny.ply', 'fit': {'longest': 0.3}}.")
+      "A shape. `box`, `sphere`, `cylinder`, `plane` and `mesh` make one; a | b is both together, a & b what both\n"
+      "share, a - b the first without the second. So does any text or dict that may stand behind `shape:` in a\n"
+      "scene file, as {'mesh': 'bunny.ply', 'fit': {'longest': 0.3}}.")
       .def(
-          "__init__", [](SceneShape* self, nb::object shape) { new (self) SceneShape(shape_of(shape)); },
-          nb::arg("shape"))
-      .def_prop_ro(
-          "text", [](const SceneShape& s) { return s.text(); }, "As a scene file has it.")
-      .def("__repr__", [](const SceneShape& s) { return "Shape('" + s.text() + "')"; });
+          "__init__", [](Shape* self, nb::object shape) { new (self) Shape(shape_of(shape)); }, nb::arg("shape"),
+          nb::sig("def __init__(self, shape: Shape | dict[str, object] | str) -> None"))
+      .def(
+          "turned", [](const Shape& s, const Vector<"axis">& axis, double degrees) { return s.turned(axis, degrees); },
+          nb::arg("axis"), nb::arg("degrees"), "This shape, turned about its center.")
+      .def("__or__", [](const Shape& a, const Shape& b) { return a | b; })
+      .def("__and__", [](const Shape& a, const Shape& b) { return a & b; })
+      .def("__sub__", [](const Shape& a, const Shape& b) { return a - b; })
+      .def("__repr__", [](const Shape& s) { return "Shape('" + shape_yaml(s) + "')"; });
   m.def(
-      "box", [](const Vector<"min">& min, const Vector<"max">& max) { return SceneShape::box(min, max); },
-      nb::arg("min"), nb::arg("max"), "A box between two corners [m].");
+      "box", [](const Vector<"min">& min, const Vector<"max">& max) { return Shape::box(min, max); }, nb::arg("min"),
+      nb::arg("max"), "A box between two corners [m].");
   m.def(
-      "sphere", [](const Vector<"center">& center, double radius) { return SceneShape::sphere(center, radius); },
+      "sphere", [](const Vector<"center">& center, double radius) { return Shape::sphere(center, radius); },
       nb::arg("center"), nb::arg("radius"), "A ball [m].");
   m.def(
       "cylinder",
       [](const Vector<"center">& center, double radius, double height) {
-        return SceneShape::cylinder(center, radius, height);
+        return Shape::cylinder(center, radius, height);
       },
       nb::arg("center"), nb::arg("radius"), nb::arg("height"), "An upright cylinder [m].");
+  m.def(
+      "plane", [](const Vector<"point">& point, const Vector<"normal">& normal) { return Shape::plane(point, normal); },
+      nb::arg("point"), nb::arg("normal"), "All that is behind a plane [m], whose normal points out of it.");
+  m.def(
+      "mesh",
+      [](const std::filesystem::path& file, std::optional<double> longest,
+         const std::optional<Vector<"center">>& center) {
+        Shape shape = Shape::mesh(file.string());
+        std::get<MeshShape>(shape.form).longest = longest, shape.center = given(center);
+        return shape;
+      },
+      nb::arg("file"), nb::kw_only(), nb::arg("longest") = nb::none(), nb::arg("center") = nb::none(),
+      nb::sig(
+          "def mesh(file: str | os.PathLike[str], *, longest: float | None = None, center: numpy.typing.ArrayLike | "
+          "None = None) -> Shape"),
+      "A mesh file (PLY, STL, OBJ, OFF, glTF, or asset:NAME), scaled so that its longest side is `longest` [m], its\n"
+      "middle at `center` [m]; without them as the file has it.");
 }
 
 }  // namespace

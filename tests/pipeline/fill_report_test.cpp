@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 /// A cup of 0.2 m, whose hollow stands on y = 0.04, with a body in it.
-SceneDescription cup(const std::string& body, const std::string& colliders = "", int frames = 3) {
+model::Scene cup(const std::string& body, const std::string& colliders = "", int frames = 3) {
   const auto r = scene::parse_scene_text(
       fmt::format(
           "dreampm: 1\nname: cup\nspace: {{min: [0, 0, 0], max: [0.36, 0.36, 0.36], spacing: 0.01}}\n"
@@ -44,7 +44,7 @@ class Filled : public testing::Test {
         fs::path(DM_BINARY_DIR) / "test-files" / "fill" / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
   }
-  void run(const SceneDescription& scene, bool resume = false) const {
+  void run(const model::Scene& scene, bool resume = false) const {
     SimulateOptions options;
     options.folder = folder_;
     options.resume = resume;
@@ -97,7 +97,7 @@ TEST_F(Filled, ABellThatHangsInItIsAPocket) {
 // A cup that is carried along is measured where it stands, and so is one that is tipped: what it
 // can hold then ends at its lowest rim.
 TEST_F(Filled, AContainerThatMovesIsMeasuredWhereItIs) {
-  SceneDescription scene = cup(water_up_to(0.14), "", 6);
+  model::Scene scene = cup(water_up_to(0.14), "", 6);
   scene.colliders[0].motion.emplace().velocity = {0.3, 0, 0};
   run(scene);
   const Series series = read_series(folder_ / "fill.csv");
@@ -117,7 +117,7 @@ TEST_F(Filled, AContainerThatMovesIsMeasuredWhereItIs) {
 }
 
 TEST_F(Filled, TheFileHasARowAFrameAlsoAfterAResume) {
-  const SceneDescription scene = cup(water_up_to(0.2));
+  const model::Scene scene = cup(water_up_to(0.2));
   run(scene);
   const std::string whole = read_file(folder_ / "fill.csv");
   const Series series = read_series(folder_ / "fill.csv");
@@ -141,7 +141,7 @@ TEST_F(Filled, SaysWhatThereIsNot) {
   run(cup(water_up_to(0.2), "", 1));
   const auto fill_of_frame = [&](int frame) { return [this, frame] { frame_fill(open_run(folder_), frame); }; };
   EXPECT_THAT(fill_of_frame(7), ThrowsMessage<InputError>(HasSubstr("has no frame 7: it has 1 to 1")));
-  SceneDescription none = cup(water_up_to(0.2), "", 1);
+  model::Scene none = cup(water_up_to(0.2), "", 1);
   none.colliders[0].shape = {};
   none.colliders[0].shape.form = BoxShape{{0.02, 0.02, 0.02}};
   none.colliders[0].shape.center = Vec3d{0.02, 0.3, 0.02};
@@ -150,7 +150,7 @@ TEST_F(Filled, SaysWhatThereIsNot) {
   EXPECT_THAT(fill_of_frame(1), ThrowsMessage<InputError>(HasSubstr("no collider of the scene is a container")));
 }
 
-HollowLines lines_of(const SceneDescription& scene) { return hollow_lines(scene, regions_of(scene)); }
+HollowLines lines_of(const model::Scene& scene) { return hollow_lines(scene, regions_of(scene)); }
 
 TEST(HollowLines, SayWhatAContainerHolds) {
   const HollowLines lines = lines_of(cup(water_up_to(0.1)));

@@ -43,7 +43,7 @@ colliders:
 output: {checkpoint: {every: 5}}
 )";
 
-SceneDescription scene(const std::vector<std::string>& overrides = {}) {
+model::Scene scene(const std::vector<std::string>& overrides = {}) {
   scene::ParseOptions options;
   options.overrides = overrides;
   const auto r = scene::parse_scene_text(scene_text, "two.yaml", options);
@@ -52,7 +52,7 @@ SceneDescription scene(const std::vector<std::string>& overrides = {}) {
 }
 
 /// The scene with a probe of every type, at rates between steps and frames.
-SceneDescription measured(std::vector<std::string> overrides = {}) {
+model::Scene measured(std::vector<std::string> overrides = {}) {
   for (const char* probe : {"level={type: height, at: [0.1, 0.2], rate: 24}",
                             "p={type: pressure, at: [0, 0.1, 0.2], normal: [1, 0, 0], radius: 0.05}",
                             "v={type: velocity, at: [0.2, 0.1, 0.2], radius: 0.05, rate: 100}",
@@ -78,7 +78,7 @@ class Resume : public testing::Test {
   /// Runs in a process of its own, as a user would; gives its exit code, or -signal. `until`:
   /// called in the parent meanwhile.
   template <class During>
-  int run(const std::string& name, SimulateOptions options, const SceneDescription& s, const During& during) {
+  int run(const std::string& name, SimulateOptions options, const model::Scene& s, const During& during) {
     const pid_t child = fork();
     if (child == 0) {
       std::freopen("/dev/null", "w", stderr);
@@ -98,7 +98,7 @@ class Resume : public testing::Test {
     waitpid(child, &status, 0);
     return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
   }
-  int run(const std::string& name, const SimulateOptions& options = {}, const SceneDescription& s = scene()) {
+  int run(const std::string& name, const SimulateOptions& options = {}, const model::Scene& s = scene()) {
     return run(name, options, s, [](pid_t) {});
   }
   std::vector<std::string> hashes(const std::string& name) const {
@@ -139,7 +139,7 @@ TEST_F(Resume, ThreadsAndOutputDoNotChangeTheBits) {
 }
 
 /// A block that gravity strikes within one step, so hard that steps at cfl 0.5 cannot follow.
-SceneDescription jolted(const std::string& strength) {
+model::Scene jolted(const std::string& strength) {
   const std::string text = R"(dreampm: 1
 name: jolt
 space: {min: [0, 0, 0], max: [0.4, 0.8, 0.4], spacing: 0.02, walls: {ceiling: {type: open}}}
@@ -216,7 +216,7 @@ TEST_F(Resume, WhatTheGridCarriesBesidesGoesOnTheSameWay) {
   for (const auto& [name, overrides] :
        {std::pair{"kept velocities, periodic axes, fields", kept}, std::pair{"what several densities fill", filled}}) {
     SCOPED_TRACE(name);
-    const SceneDescription s = scene(overrides);
+    const model::Scene s = scene(overrides);
     ASSERT_EQ(run("whole", {}, s), 0);
     ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
     SimulateOptions again;
@@ -229,7 +229,7 @@ TEST_F(Resume, WhatTheGridCarriesBesidesGoesOnTheSameWay) {
 }
 
 TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
-  const SceneDescription s =
+  const model::Scene s =
       scene({"time.frames=9", "materials.water.viscosity=1000", "materials.water.max_compression=0.2"});
   ASSERT_EQ(run("whole", {}, s), 0);
   ASSERT_EQ(run("cut", {.folder = {}, .frames = 6}, s), 0);
@@ -243,7 +243,7 @@ TEST_F(Resume, StagesOfViscosityGoOnTheSameWay) {
 }
 
 TEST_F(Resume, AProjectionGoesOnTheSameWayOnAnyThreads) {
-  const SceneDescription s = scene(
+  const model::Scene s = scene(
       {"time.frames=13", "time.solver=projection", "time.cfl=2", "materials.jelly={type: newtonian, preset: water}"});
   ASSERT_EQ(run("whole", {.folder = {}, .frames = {}, .threads = 1, .strict = true}, s), 0);
   ASSERT_EQ(run("cut", {.folder = {}, .frames = 7, .threads = 2}, s), 0);

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/pointer.h"
-#include "dreampm/scene/description.h"
 #include "small_stage.h"
 
 namespace dreampm::play::bodies_test {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "small_stage.h"
 
 namespace dreampm::play::files_test {
@@ -57,13 +57,13 @@ TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
   play(p, {"frames 20", "pin 0.5 0.1 0.3 0.1", "frames 2", "save " + (folder / "pond.yaml").string()});
   const Simulation& before = p.simulation();
   Simulation after(load_scene(folder / "pond.yaml"), quiet_options().simulation);
-  for (const scene::Collider& c : before.scene().description().colliders) {
+  for (const model::Collider& c : before.scene().model().colliders) {
     const ColliderState old = before.collider(c.name), now = after.collider(c.name);
     EXPECT_EQ(old.pose, now.pose) << c.name;
     EXPECT_EQ(length(old.twist.velocity - now.twist.velocity), 0) << c.name;
   }
-  ASSERT_EQ(after.scene().description().fields.size(), 1U);
-  EXPECT_EQ(after.scene().description().fields[0].name, "pin-1");
+  ASSERT_EQ(after.scene().model().fields.size(), 1U);
+  EXPECT_EQ(after.scene().model().fields[0].name, "pin-1");
   EXPECT_EQ(after.hash(), p.hash());
   after.advance_steps(3);
   // Played, its pins can be let go, and others come beside them.
@@ -74,7 +74,7 @@ TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
   EXPECT_EQ(again.frame()->pins.size(), 2u);
   play(again, {"pin off", "frames 1"});
   EXPECT_TRUE(again.frame()->pins.empty());
-  EXPECT_TRUE(again.simulation().scene().description().fields.empty());
+  EXPECT_TRUE(again.simulation().scene().model().fields.empty());
 }
 
 TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/firmness.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/stories.h"
-#include "dreampm/scene/description.h"
 #include "small_stage.h"
 
 namespace dreampm::play::firm_stories_test {
@@ -48,7 +48,7 @@ TEST_P(FirmStory, HasRoomForSofterMatterWhileItFalls) {
 TEST_P(FirmStory, HasItsVolumeAfterTheFalls) {
   Playground p(load_stage(GetParam()), quiet_options(2));
   play(p, {"size small", "frames 100"});
-  for (const scene::Material& m : p.simulation().scene().description().materials) {
+  for (const model::Material& m : p.simulation().scene().model().materials) {
     if (!is_elastic(m)) continue;
     const ParticleView all = p.simulation().particles(m.name);
     double sum = 0;

@@ -8,11 +8,11 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/panels.h"
 #include "dreampm/play/random_hands.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 #include "hand.h"
 #include "small_stage.h"
 
@@ -218,13 +218,13 @@ TEST(LargeSteps, TheSliderOfCellsInAStepTakesThePlaceOfStiffness) {
   const int usual = steps_of(p, 6);
   play(p, {"seek 0.1", "set cfl 0.5"});
   EXPECT_GE(steps_of(p, 6), 2 * usual);
-  EXPECT_EQ(p.simulation().scene().description().time.cfl, 0.5);
+  EXPECT_EQ(p.simulation().scene().model().time.cfl, 0.5);
   play(p, {"restart", "frames 1"});
-  EXPECT_EQ(p.simulation().scene().description().time.cfl, 0.5) << "as it is set";
+  EXPECT_EQ(p.simulation().scene().model().time.cfl, 0.5) << "as it is set";
   play(p, {"undo", "undo"});
   EXPECT_EQ(value_of(p, "cfl"), 2);
   play(p, {"frames 1"});
-  EXPECT_EQ(p.simulation().scene().description().time.cfl, 2);
+  EXPECT_EQ(p.simulation().scene().model().time.cfl, 2);
   EXPECT_THAT(refusal(p, "set cfl 4"), HasSubstr("between 0.5 and 3"));
   Playground other(small_stage(), quiet_options());
   EXPECT_THAT(refusal(other, "set cfl 1"), HasSubstr("no control 'cfl'"));

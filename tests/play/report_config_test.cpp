@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "dreampm/base/file.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/scene.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/simulation.h"
 #include "thrown.h"
 
@@ -153,17 +153,17 @@ TEST(ReportScene, HoldsTheReportsParticlesAtTheReportsSettings) {
         EXPECT_NEAR(double(simulation.particles("diy").size()), wanted / 2, 0.02 * wanted / 2);
         EXPECT_NEAR(double(simulation.particles("cube").size()), wanted / 2, 0.02 * wanted / 2);
       }
-      const auto& space = scene.description().space;
+      const auto& space = scene.model().space;
       EXPECT_NEAR(space.spacing * std::cbrt(space.particles_per_cell), 1.0 / grid, 1e-9) << "the report's cells";
-      EXPECT_EQ(scene.description().gravity.y, -9.8);
+      EXPECT_EQ(scene.model().gravity.y, -9.8);
     }
 }
 
 TEST(ReportScene, HasTheReportsMaterials) {
   const Scene scene = parse_scene(report_scene(report_config(), 1), "report");
-  const auto& materials = scene.description().materials;
+  const auto& materials = scene.model().materials;
   ASSERT_EQ(scene.materials(), (std::vector<std::string>{"cube", "diy"}));
-  EXPECT_EQ(materials[1].info->name, "seed");
+  EXPECT_EQ(materials[1].type, "seed");
   EXPECT_EQ(materials[1].values["v"], 0.5);
   EXPECT_EQ(materials[1].values["lower"], -250);
   EXPECT_EQ(materials[1].values["upper"], 45);
@@ -171,7 +171,7 @@ TEST(ReportScene, HasTheReportsMaterials) {
   const double e = materials[0].values["youngs_modulus"], nu = materials[0].values["poissons_ratio"];
   EXPECT_NEAR(e / (2 * (1 + nu)), 4 * 416.6, 1e-6);
   EXPECT_NEAR(e * nu / ((1 + nu) * (1 - 2 * nu)), 4 * 277.7, 1e-6);
-  EXPECT_EQ(scene.description().render.looks.at("cube").color, (Vec3d{0.93, 0.33, 0.23}));
+  EXPECT_EQ(scene.model().render.looks.at("cube").color, (Vec3d{0.93, 0.33, 0.23}));
 }
 
 TEST(ReportScene, RunsAndFalls) {
@@ -190,7 +190,7 @@ TEST(ReportScene, TakesWhateverTheConfigTakes) {
   config.width = 641, config.height = 359;
   config.presets = {{"say \"it\": #1", {0, 0}, {{0, 0, 0}, {0.5, 0.5, 0.5}}, {{0.05, 0.05, 0.05}, {0.5, 0.5, 0.5}}}};
   const Scene scene = parse_scene(report_scene(config, 0), "report");
-  EXPECT_EQ(scene.description().render.width, 640);
+  EXPECT_EQ(scene.model().render.width, 640);
   EXPECT_NEAR(double(Simulation(scene).particle_count()), 8192, 0.02 * 8192);
 }
 

@@ -12,11 +12,11 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/io/png.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/report_looks.h"
 #include "dreampm/play/story_files.h"
 #include "dreampm/scene.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/simulation.h"
 
 namespace dreampm::play {
@@ -72,19 +72,19 @@ TEST_P(StoryTest, StartsMovesAndTakesTwentyStepsWithoutAWarning) {
   const Scene scene = parse_scene(story.scene, std::string(story.name), {}, &warnings);
   EXPECT_THAT(warnings, testing::IsEmpty());
   EXPECT_EQ(scene.name(), story.name);
-  EXPECT_FALSE(scene.description().about.empty());
+  EXPECT_FALSE(scene.model().about.empty());
   EXPECT_EQ(scene.fps(), 60);
   const double seconds = (scene.frames() - 1) / scene.fps();
   EXPECT_GE(seconds, 3.9);
   EXPECT_LE(seconds, 8.1);
-  EXPECT_FALSE(scene.description().render.camera.fit_basin) << "a story has a camera of its own";
+  EXPECT_FALSE(scene.model().render.camera.fit_basin) << "a story has a camera of its own";
   Listener listener;
   SimulationOptions options;
   options.host = &listener;
   Simulation simulation(scene, options);
   std::size_t most = simulation.particle_count();
-  for (const auto& emitter : scene.description().emitters) most += std::size_t(emitter.pool);
-  const bool large_steps = scene.description().time.solver == SolverKind::projection;
+  for (const auto& emitter : scene.model().emitters) most += std::size_t(emitter.pool);
+  const bool large_steps = scene.model().time.solver == SolverKind::projection;
   EXPECT_LE(most, large_steps ? 130000u : 32000u) << "too many for real time";
   for (int i = 0; i < 20; ++i) simulation.step();
   EXPECT_GT(simulation.totals().kinetic, 0);

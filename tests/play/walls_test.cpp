@@ -6,9 +6,9 @@
 #include <cmath>
 #include <filesystem>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/pointer.h"
 #include "dreampm/play/wall_face.h"
-#include "dreampm/scene/description.h"
 #include "small_stage.h"
 
 namespace dreampm::play::walls_test {
@@ -57,7 +57,7 @@ TEST(Walls, ADraggedWallPushesMatterAndLosesNone) {
   play(p, {"wall off", "frames 60"});
   EXPECT_EQ(p.frame()->room.max.x, 0.4);
   EXPECT_TRUE(p.frame()->bodies.empty()) << "back at its place it is the wall of the box again";
-  EXPECT_EQ(p.simulation().scene().description().colliders.size(), 0u);
+  EXPECT_EQ(p.simulation().scene().model().colliders.size(), 0u);
   EXPECT_GT(spread(*p.frame()).max, 0.3);
 }
 
@@ -134,8 +134,8 @@ TEST(Walls, ASavedSceneHasThemWhereTheyStand) {
   // And from there on again.
   play(again, {"wall x_max 0.38", "frames 2", "save " + (folder / "again.yaml").string()});
   const Scene twice = load_scene(folder / "again.yaml");
-  ASSERT_EQ(twice.description().colliders.size(), 1u);
-  EXPECT_EQ(twice.description().colliders[0].name, "wall-x_max");
+  ASSERT_EQ(twice.model().colliders.size(), 1u);
+  EXPECT_EQ(twice.model().colliders[0].name, "wall-x_max");
 }
 
 // A wall that stands where it was dragged to, and one that is pressed on.

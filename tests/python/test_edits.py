@@ -2,6 +2,13 @@ import numpy as np
 import pytest
 
 import dreampm as dm
+from dreampm.model import Body, Collider, Look, Material, Rigid
+
+
+def crate(place):
+    """A cube of 4 cm of wood."""
+    half = np.full(3, 0.02)
+    return Collider("crate", dm.box(place - half, place + half), friction=0.4, rigid=Rigid(density=400))
 
 
 def test_parameters_by_name(tank):
@@ -34,7 +41,7 @@ def test_honey_flows_slower_than_water(tank):
         sim = dm.Simulation(tank)
         sim.remove(dm.box((0.25, 0, 0), (0.4, 0.4, 0.2)))
         sim.materials["water"].viscosity = viscosity
-        sim.colliders["gate"].motion = dm.Motion(velocity=(0, 5, 0))
+        sim.colliders["gate"].motion = dm.Twist(velocity=(0, 5, 0))
         sim.advance_to(0.15)
         fronts.append(sim.particles["water"].position[:, 0].max())
     assert fronts[0] > fronts[1] + 0.05
@@ -61,12 +68,12 @@ def test_colliders_move(tank):
     sim = dm.Simulation(tank)
     gate = sim.colliders["gate"]
     assert list(sim.colliders) == ["gate"] and gate.pose.position == (0, 0, 0) and gate.pose.rotation == (1, 0, 0, 0)
-    gate.motion = dm.Motion(velocity=(0, 1, 0))
-    assert gate.motion == dm.Motion(velocity=(0, 1, 0))
+    gate.motion = dm.Twist(velocity=(0, 1, 0))
+    assert gate.motion == dm.Twist(velocity=(0, 1, 0))
     sim.advance_to(0.1)
     assert gate.pose.position == pytest.approx((0, sim.time, 0))
     assert gate.pose((1, 0, 0)) == pytest.approx((1, sim.time, 0))
-    gate.motion = dm.Motion()
+    gate.motion = dm.Twist()
     at = gate.pose.position
     sim.step()
     assert gate.pose.position == at
@@ -75,13 +82,13 @@ def test_colliders_move(tank):
 def test_matter_comes_and_goes(tank):
     sim = dm.Simulation(tank)
     count = sim.particle_count
-    sim.add("ball", "jelly", dm.sphere((0.32, 0.3, 0.1), 0.05), velocity=(0, -1, 0), color=(0, 0, 1))
+    sim.add(Body("ball", "jelly", dm.sphere((0.32, 0.3, 0.1), 0.05), velocity=(0, -1, 0), color=(0, 0, 1)))
     jelly = sim.particles["jelly"]
     assert np.allclose(jelly.velocity[-1], (0, -1, 0)) and np.allclose(jelly.color[-1], (0, 0, 1))
     assert np.allclose(jelly.color[0], (1, 0, 0))
     added = sim.particle_count - count
     assert added > 10 and sim.totals.entered == added
-    sim.add("plate", "jelly", {"box": {"min": [0.3, 0.36, 0.02], "max": [0.34, 0.38, 0.06]}})
+    sim.add(Body("plate", "jelly", {"box": {"min": [0.3, 0.36, 0.02], "max": [0.34, 0.38, 0.06]}}))
     places = np.array([[0.3, 0.2, 0.02], [0.34, 0.2, 0.02]], dtype=np.float32)
     sim.add_particles("water", places, velocity=(1, 0, 0))
     assert np.allclose(sim.particles["water"].position[-2:], places)
@@ -91,7 +98,7 @@ def test_matter_comes_and_goes(tank):
     with pytest.raises(dm.InputError, match="outside of the walls"):
         sim.add_particles("water", np.array([[2.0, 0, 0]]))
     with pytest.raises(dm.InputError, match="name ball"):
-        sim.add("ball", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05))
+        sim.add(Body("ball", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05)))
     sim.add_particles("water", [(0.3, 0.24, 0.02), [0.34, 0.24, 0.02]])
     assert np.allclose(sim.particles["water"].position[-2:], [(0.3, 0.24, 0.02), (0.34, 0.24, 0.02)])
     sim.add_particles("water", [])
@@ -106,12 +113,12 @@ def test_matter_comes_and_goes(tank):
     (lambda sim: setattr(sim, "gravity", (0, -9.81)), r"gravity: \(0, -9.81\) is no vector, which is three numbers"),
     (lambda sim: setattr(sim, "gravity", 9.81), "gravity: 9.81 is no vector"),
     (lambda sim: setattr(sim, "gravity", "down"), "gravity: 'down' is no vector"),
-    (lambda sim: sim.add("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), velocity=(0, "fast", 0)), "velocity: .*'fast'"),
-    (lambda sim: sim.add("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), color=[1, 0, 0, 1]), "color: "),
+    (lambda sim: Body("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), velocity=(0, "fast", 0)), "velocity: .*'fast'"),
+    (lambda sim: Body("b", "jelly", dm.sphere((0.1, 0.3, 0.1), 0.05), color=[1, 0, 0, 1]), "color: "),
     (lambda sim: sim.add_particles("water", np.zeros((1, 3)), velocity=np.zeros(2)), "velocity: array"),
     (lambda sim: dm.box((0, 0), (1, 1, 1)), "min: "),
     (lambda sim: dm.sphere(0, 1), "center: 0 is"),
-    (lambda sim: dm.Motion(spin=[[1, 2, 3]]), "spin: "),
+    (lambda sim: dm.Twist(spin=[[1, 2, 3]]), "spin: "),
     (lambda sim: dm.Simulation("a.yaml"), "Scene.load"),
 ])
 def test_what_is_no_vector_is_named(tank, wrong, why):
@@ -128,10 +135,11 @@ def test_vectors_are_lists_tuples_and_arrays_of_any_numbers(tank):
 
 def test_a_material_more_and_one_without_particles(tank):
     sim = dm.Simulation(tank)
-    sim.add_material("honey", {"type": "newtonian", "preset": "honey"}, look={"type": "opaque", "color": [1, 0.7, 0]})
+    sim.add_material(Material("honey", "newtonian", dm.preset("newtonian", "honey")),
+                     look=Look(type="opaque", color=(1, 0.7, 0)))
     assert list(sim.particles) == ["water", "jelly", "honey"] and sim.materials["honey"].density == 1418
     assert sim.particles["honey"].position.shape == (0, 3) and sim.particles["honey"].id.shape == (0,)
-    sim.add("blob", "honey", dm.cylinder((0.1, 0.3, 0.1), 0.05, 0.1))
+    sim.add(Body("blob", "honey", dm.cylinder((0.1, 0.3, 0.1), 0.05, 0.1)))
     assert len(sim.particles["honey"]) > 10
     sim.materials["jelly"].reset_state()
     sim.step()
@@ -142,7 +150,7 @@ def test_a_brush_takes_matter_along(tank):
     for stroke in (False, True):
         sim = dm.Simulation(tank)
         if stroke:
-            sim.brush("hand", point=(0.1, 0.1, 0.1), radius=0.08, velocity=(0, 2, 0))
+            sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.08, velocity=(0, 2, 0)))
         sim.advance_to(0.05)
         sim.lift_brush("hand")
         moved.append(sim.particles["water"].velocity[:, 1].max())
@@ -179,17 +187,17 @@ def test_surfaces_and_pictures(tank, tmp_path):
 
 def test_bodies_and_colliders_come_and_go(tank):
     sim = dm.Simulation(tank)
-    sim.add_rigid("crate", {"box": {"size": [0.04, 0.04, 0.04]}}, density=400, position=(0.1, 0.3, 0.1))
+    sim.add(crate((0.1, 0.3, 0.1)))
     assert sim.colliders["crate"].mass == pytest.approx(400 * 0.04**3)
     high = sim.colliders["crate"].pose.position[1]
     sim.advance_to(0.05)
     assert sim.colliders["crate"].pose.position[1] < high - 0.005, "it falls"
     with pytest.raises(dm.InputError, match="crate"):
-        sim.add_rigid("crate", dm.sphere((0.1, 0.35, 0.1), 0.02))
-    sim.remove_rigid("crate")
+        sim.add(crate((0.1, 0.35, 0.1)))
+    sim.remove_collider("crate")
     with pytest.raises(dm.InputError, match="crate"):
         sim.colliders["crate"]
-    sim.add_collider("post", dm.box((0.3, 0.3, 0.05), (0.35, 0.4, 0.15)), type="slip")
+    sim.add(Collider("post", dm.box((0.3, 0.3, 0.05), (0.35, 0.4, 0.15)), type="slip"))
     assert "post" in sim.colliders and sim.colliders["post"].mass == 0
     sim.remove_collider("post")
     assert "post" not in sim.colliders
@@ -198,7 +206,7 @@ def test_bodies_and_colliders_come_and_go(tank):
 def test_a_held_body_does_not_fall(tank):
     sim = dm.Simulation(tank)
     place = np.array([0.1, 0.3, 0.1])
-    sim.add_rigid("crate", {"box": {"size": [0.04, 0.04, 0.04]}}, position=place)
+    sim.add(crate(place))
     at = place - np.array(sim.colliders["crate"].pose.position)
     sim.hold("crate", at=at, to=place, stiffness=1e5, damping=100)
     there = np.array(sim.colliders["crate"].motion.center)

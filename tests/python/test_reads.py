@@ -3,6 +3,7 @@ import numpy as np
 import pytest
 
 import dreampm as dm
+from dreampm.model import Collider, Rigid
 
 
 def test_names(tank):
@@ -10,8 +11,8 @@ def test_names(tank):
     names = sim.names
     assert names.materials == ["water", "jelly"] and names.bodies == ["pool", "cube"] and names.colliders == ["gate"]
     assert names.rigid == names.emitters == names.brushes == []
-    sim.add_rigid("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)))
-    sim.brush("hand", point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50)
+    sim.add(Collider("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)), rigid=Rigid(density=1000)))
+    sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
     assert sim.names.rigid == ["crate"] and "crate" in sim.names.colliders and sim.names.brushes == ["hand"]
     assert "names" in dir(sim) and "colliders=['gate'" in repr(sim.names)
 
@@ -20,7 +21,7 @@ def test_what_is_set_is_read_back_also_from_a_file(tank, tmp_path):
     sim = dm.Simulation(tank, threads=1)
     sim.gravity, sim.cfl = (1, -9, 0), 0.3
     sim.walls["x_max"] = ("separate", 0.3)
-    sim.colliders["gate"].motion = dm.Motion(velocity=(0, 0.5, 0))
+    sim.colliders["gate"].motion = dm.Twist(velocity=(0, 0.5, 0))
     sim.colliders["gate"].slack = 0.1
     sim.materials["water"].viscosity = 2
     sim.step()
@@ -48,14 +49,14 @@ def test_what_is_set_is_read_back_also_from_a_file(tank, tmp_path):
 
 def test_grips_and_brushes(tank):
     sim = dm.Simulation(tank)
-    sim.add_rigid("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)))
+    sim.add(Collider("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)), rigid=Rigid(density=1000)))
     assert sim.grip("crate") is None and sim.brushes == {}
     sim.hold("crate", at=(0.3, 0.2, 0.1), to=(0.3, 0.3, 0.1), stiffness=50, damping=2)
     grip = sim.grip("crate")
     assert grip.to == (0.3, 0.3, 0.1) and grip.stiffness == 50 and grip.damping == 2
     sim.let_go()
     assert sim.grip("crate") is None
-    sim.brush("hand", point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50)
+    sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
     assert sim.brushes["hand"].radius == 0.05 and sim.brushes["hand"].velocity == (1, 0, 0)
     sim.lift_brush("hand")
     assert sim.brushes == {}

@@ -6,13 +6,13 @@ namespace dreampm {
 namespace {
 
 TEST(FromScene, TakesOverWallsLooksAndSizes) {
-  SceneDescription scene;
+  model::Scene scene;
   scene.seed = 9;
   scene.space.max = {1.2, 0.9, 0.4};
-  scene.space.walls[scene::y_max].type = WallType::open;
+  scene.space.walls[index(Side::y_max)].type = WallType::open;
   scene.render.width = 64, scene.render.height = 36, scene.render.samples = 2;
   scene.render.light.sky = SkyKind::studio;
-  scene.render.stage.floor = scene::Floor::none;
+  scene.render.stage.floor = model::Floor::none;
   const RenderScene out = render_scene(scene);
   EXPECT_FLOAT_EQ(out.basin.max.y, 0.9f);
   EXPECT_FALSE(out.is_wall[3]);
@@ -27,8 +27,8 @@ TEST(FromScene, TakesOverWallsLooksAndSizes) {
 }
 
 TEST(FromScene, ColorsBecomeLinear) {
-  scene::Look look;
-  look.type = scene::LookType::opaque;
+  model::Look look;
+  look.type = model::LookType::opaque;
   look.color = {0, 0.5, 1};
   const auto opaque = std::get<OpaqueLook>(render_look(look));
   EXPECT_FLOAT_EQ(opaque.color.x, 0);
@@ -37,7 +37,7 @@ TEST(FromScene, ColorsBecomeLinear) {
 }
 
 TEST(FromScene, AClearDielectricDoesNotGlow) {
-  scene::Look look;
+  model::Look look;
   look.absorption = {0, 0, 0};
   EXPECT_EQ(std::get<DielectricLook>(render_look(look)).glow, (Vec3f{0, 0, 0}));
   // Water glows in the colors that it lets through.

@@ -21,7 +21,7 @@ materials: {water: {type: newtonian}}
 bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [1, 0.5, 1]}}}}
 )";
 
-SceneDescription good(const std::string& text, const ParseOptions& options = {}) {
+model::Scene good(const std::string& text, const ParseOptions& options = {}) {
   const ParseResult r = parse_scene_text(text, "scene.yaml", options);
   EXPECT_TRUE(r.ok()) << r.text();
   return r.scene;
@@ -33,13 +33,13 @@ std::string bad(const std::string& text, const ParseOptions& options = {}) {
 }
 
 TEST(Parse, FillsInEveryDefault) {
-  const SceneDescription s = good(start);
+  const model::Scene s = good(start);
   EXPECT_EQ(s.output.folder, "out/box");
   EXPECT_EQ(s.time.fps, 24);
   EXPECT_EQ(s.gravity, (Vec3d{0, -9.81, 0}));
   EXPECT_EQ(s.materials[0].values["gamma"], 7);
   EXPECT_FALSE(s.materials[0].values.has("bulk_modulus")) << "is for the solver to derive";
-  EXPECT_EQ(s.render.looks.at("water").type, LookType::dielectric);
+  EXPECT_EQ(s.render.looks.at("water").type, model::LookType::dielectric);
   const BoxShape& box = std::get<BoxShape>(s.bodies[0].shape.form);
   EXPECT_EQ(box.size, (Vec3d{1, 0.5, 1}));
   EXPECT_EQ(*s.bodies[0].shape.center, (Vec3d{0.5, 0.25, 0.5}));
@@ -48,22 +48,22 @@ TEST(Parse, FillsInEveryDefault) {
 TEST(Parse, RoundsTheSpaceUpToWholeCellsOnly) {
   std::string text = start;
   text.replace(text.find("max: [1, 1, 1]"), 14, "max: [1, 1.01, 0.84]");
-  const Space s = good(text).space;
+  const model::Space s = good(text).space;
   EXPECT_EQ(s.cells(), (Vec3i{25, 26, 21})) << "0.84 is 21 cells of 0.04, not 22";
-  EXPECT_NEAR(s.max.y, 1.04, 1e-12);
-  EXPECT_EQ(s.asked_max.y, 1.01);
+  EXPECT_NEAR(s.end().y, 1.04, 1e-12);
+  EXPECT_EQ(s.max.y, 1.01);
 }
 
 TEST(Parse, PeriodicAxesAreWholeBlocksWithoutWalls) {
   std::string text = start;
   text.replace(text.find("max: [1, 1, 1], spacing: 0.02"), 29,
                "max: [1, 1, 0.96], spacing: 0.02, periodic: [z, x], walls: {all: {type: stick}}");
-  const Space s = good(text).space;
+  const model::Space s = good(text).space;
   EXPECT_EQ(s.cells(), (Vec3i{28, 25, 24}));
-  EXPECT_NEAR(s.max.x, 1.12, 1e-12);
-  EXPECT_NEAR(s.max.z, 0.96, 1e-12);
-  EXPECT_EQ(s.walls[x_min], (Wall{WallType::open, 0}));
-  EXPECT_EQ(s.walls[y_max], (Wall{WallType::stick, 0}));
+  EXPECT_NEAR(s.end().x, 1.12, 1e-12);
+  EXPECT_NEAR(s.end().z, 0.96, 1e-12);
+  EXPECT_EQ(s.walls[index(Side::x_min)], (Wall{WallType::open, 0}));
+  EXPECT_EQ(s.walls[index(Side::y_max)], (Wall{WallType::stick, 0}));
 }
 
 TEST(Parse, WallsGoFromGeneralToSpecial) {
@@ -74,11 +74,11 @@ TEST(Parse, WallsGoFromGeneralToSpecial) {
   std::string text = start;
   text.replace(text.find("spacing: 0.02"), 13, "spacing: 0.02, " + walls);
   const auto w = good(text).space.walls;
-  EXPECT_EQ(w[x_min], (Wall{WallType::open, 0}));
-  EXPECT_EQ(w[x_max], (Wall{WallType::slip, 0.3, true}));
-  EXPECT_EQ(w[z_max], (Wall{WallType::slip, 0.3, false}));
-  EXPECT_EQ(w[y_min], (Wall{WallType::stick, 0}));
-  EXPECT_EQ(w[y_max], (Wall{WallType::separate, 0.3, true}));
+  EXPECT_EQ(w[index(Side::x_min)], (Wall{WallType::open, 0}));
+  EXPECT_EQ(w[index(Side::x_max)], (Wall{WallType::slip, 0.3, true}));
+  EXPECT_EQ(w[index(Side::z_max)], (Wall{WallType::slip, 0.3, false}));
+  EXPECT_EQ(w[index(Side::y_min)], (Wall{WallType::stick, 0}));
+  EXPECT_EQ(w[index(Side::y_max)], (Wall{WallType::separate, 0.3, true}));
 }
 
 TEST(Parse, SecondsBecomeFrames) {
@@ -89,7 +89,7 @@ TEST(Parse, SecondsBecomeFrames) {
 TEST(Parse, PresetFirstThenOwnKeys) {
   std::string text = start;
   text.replace(text.find("type: newtonian"), 15, "viscosity: 8, type: newtonian, preset: honey");
-  const SceneDescription s = good(text);
+  const model::Scene s = good(text);
   EXPECT_EQ(s.materials[0].values["viscosity"], 8);
   EXPECT_EQ(s.materials[0].values["density"], 1418);
 }
@@ -97,7 +97,7 @@ TEST(Parse, PresetFirstThenOwnKeys) {
 TEST(Parse, WordsOfParameters) {
   std::string text = start;
   text.replace(text.find("type: newtonian"), 15, "type: newtonian, gamma: linear, tension: true");
-  const SceneDescription s = good(text);
+  const model::Scene s = good(text);
   EXPECT_EQ(s.materials[0].values["gamma"], -1);
   EXPECT_EQ(s.materials[0].values["tension"], 1);
 }
@@ -105,7 +105,7 @@ TEST(Parse, WordsOfParameters) {
 TEST(Parse, AVariantsFixedStepStandsInsteadOfWhatBoundsTheStep) {
   const std::string text =
       start + "time: {fps: 24, frames: 2, cfl: 0.4, dt_max: 1.0e-3}\nvariants: {fixed: {time: {dt: 2.0e-4}}}\n";
-  const SceneDescription s = good(text, {.variant = "fixed", .overrides = {}});
+  const model::Scene s = good(text, {.variant = "fixed", .overrides = {}});
   EXPECT_EQ(s.time.dt, 2.0e-4);
   EXPECT_EQ(s.time.dt_max, std::nullopt);
 }
@@ -129,9 +129,9 @@ variants:
 )";
 
 TEST(Variants, AreLaidOverTheScene) {
-  const SceneDescription s = good(with_variants, {.variant = "coarse", .overrides = {}});
+  const model::Scene s = good(with_variants, {.variant = "coarse", .overrides = {}});
   EXPECT_EQ(s.space.spacing, 0.05);
-  EXPECT_EQ(s.space.asked_max, (Vec3d{1, 1, 1})) << "the rest of the map stays";
+  EXPECT_EQ(s.space.max, (Vec3d{1, 1, 1})) << "the rest of the map stays";
   EXPECT_EQ(s.time.frames, 48) << "seconds stand instead of frames";
   EXPECT_EQ(s.time.dt, 1e-3) << "and dt instead of cfl";
   EXPECT_EQ(s.output.folder, "out/box-coarse");
@@ -139,11 +139,11 @@ TEST(Variants, AreLaidOverTheScene) {
 }
 
 TEST(Variants, AnotherFormOrTypeReplacesTheWhole) {
-  const SceneDescription ball = good(with_variants, {.variant = "ball", .overrides = {}});
+  const model::Scene ball = good(with_variants, {.variant = "ball", .overrides = {}});
   EXPECT_EQ(std::get<SphereShape>(ball.bodies[0].shape.form).radius, 0.2);
-  const SceneDescription solid = good(with_variants, {.variant = "solid", .overrides = {}});
-  EXPECT_EQ(solid.materials[0].info->name, "elastic");
-  EXPECT_EQ(solid.render.looks.at("water").type, LookType::opaque);
+  const model::Scene solid = good(with_variants, {.variant = "solid", .overrides = {}});
+  EXPECT_EQ(solid.materials[0].type, "elastic");
+  EXPECT_EQ(solid.render.looks.at("water").type, model::LookType::opaque);
 }
 
 TEST(Variants, KeepTheirOwnPlaces) {
@@ -159,7 +159,7 @@ TEST(Variants, AnUnknownOneNamesTheNearest) {
 }
 
 TEST(Overrides, WinOverVariants) {
-  const SceneDescription s =
+  const model::Scene s =
       good(with_variants, {.variant = "coarse",
                            .overrides = {"space.spacing=0.1", "time.frames=7", "bodies.pool.velocity=[1, 2, 3]",
                                          "materials.water.max_compression=0.05", "gravity=[0, 0, 0]"}});
@@ -175,7 +175,7 @@ TEST(Overrides, AnotherHollowKeepsTheContainer) {
       "colliders: {mold: {shape: {container: {box: {size: [1, 1, 1]}, rotate: {axis: x, angle: 9}, "
       "wall: 0.03, up: [0, -1, 0]}, center: [1, 2, 3]}}}\n";
   const auto container = [&](const std::string& more) {
-    const SceneDescription s = good(text, {.variant = "", .overrides = {"colliders.mold.shape.container." + more}});
+    const model::Scene s = good(text, {.variant = "", .overrides = {"colliders.mold.shape.container." + more}});
     return std::get<ContainerShape>(s.colliders.at(0).shape.form);
   };
   const ContainerShape ball = container("sphere={radius: 0.4}");
@@ -222,8 +222,8 @@ TEST(Parse, CollidersAreGreyUnlessTheyHaveALook) {
                            "colliders: {post: {shape: {sphere: {radius: 0.1}, center: [0.5, 0.8, 0.5]}}, bed: {shape: "
                            "{sphere: {radius: 0.1}, center: [0.2, 0.8, 0.5]}}}\n"
                            "render: {looks: {bed: {type: opaque, color: [1, 0, 0]}}}\n";
-  const SceneDescription d = good(text);
-  EXPECT_EQ(d.render.looks.at("post").type, LookType::opaque);
+  const model::Scene d = good(text);
+  EXPECT_EQ(d.render.looks.at("post").type, model::LookType::opaque);
   EXPECT_NEAR(d.render.looks.at("post").color.x, d.render.looks.at("post").color.z, 0.05);
   EXPECT_EQ(d.render.looks.at("bed").color, (Vec3d{1, 0, 0}));
 }
@@ -234,9 +234,9 @@ TEST(Parse, ALookHasWhatItsTypeIsKnownFor) {
                            "{shape: {sphere: {radius: 0.1}, center: [0.2, 0.8, 0.5]}}}\n"
                            "render: {cut: {point: [0, 0, 0.5], normal: [0, 0, 2], of: [crate, water]}, "
                            "looks: {crate: {type: wood}, gate: {type: metal, color: [1, 0.8, 0.3]}}}\n";
-  const SceneDescription d = good(text);
-  const Look &crate = d.render.looks.at("crate"), &gate = d.render.looks.at("gate");
-  EXPECT_EQ(crate.type, LookType::wood);
+  const model::Scene d = good(text);
+  const model::Look &crate = d.render.looks.at("crate"), &gate = d.render.looks.at("gate");
+  EXPECT_EQ(crate.type, model::LookType::wood);
   EXPECT_GT(crate.color.x, crate.color.z + 0.2) << "brown";
   EXPECT_LT(crate.roughness, 1);
   EXPECT_FALSE(crate.ring || crate.grain);

@@ -15,9 +15,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Particles of analytic bodies; a mesh counts as nothing.
-double particles(const SceneDescription& s) {
+double particles(const model::Scene& s) {
   double volume = 0;
-  for (const Body& b : s.bodies) {
+  for (const model::Body& b : s.bodies) {
     if (const BoxShape* box = std::get_if<BoxShape>(&b.shape.form)) volume += box->size.x * box->size.y * box->size.z;
     if (const SphereShape* ball = std::get_if<SphereShape>(&b.shape.form))
       volume += 4.0 / 3 * 3.14159265358979 * std::pow(ball->radius, 3);
@@ -55,7 +55,7 @@ TEST(Scenes, TheDragonIsTheOneOfTheReport) {
   EXPECT_DOUBLE_EQ(r.scene.space.dx(), 0.006);
   EXPECT_EQ(r.scene.time.frames, 120);
   EXPECT_EQ(r.scene.space.cells(), (Vec3i{167, 200, 100}));
-  EXPECT_NEAR(r.scene.space.max.x, 1.002, 1e-12);
+  EXPECT_NEAR(r.scene.space.end().x, 1.002, 1e-12);
   const MeshShape& mesh = std::get<MeshShape>(r.scene.bodies.at(0).shape.form);
   EXPECT_EQ(mesh.path, "asset:stanford-dragon");
   EXPECT_EQ(mesh.longest, 0.8);
@@ -70,8 +70,8 @@ TEST(Scenes, TheDropHasAVariantForEveryPreset) {
     const ParseResult r = parse_scene(file, {.variant = name, .overrides = {}});
     ++wanted;
     ASSERT_TRUE(r.ok()) << r.text();
-    const Material& m = r.scene.materials.at(0);
-    EXPECT_EQ(m.info->name, info.name) << name;
+    const model::Material& m = r.scene.materials.at(0);
+    EXPECT_EQ(m.type, info.name) << name;
     // A picture may take a softer or slower relative of the preset, but of its density.
     for (const Preset::Value& v : preset ? preset->values : std::span<const Preset::Value>{})
       if (v.key == "density") {

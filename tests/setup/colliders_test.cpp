@@ -250,10 +250,10 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
 class WideBowl : public OpenBowl {
  protected:
   std::string said(double thickness, double spacing) const {
-    scene::Collider collider;
+    model::Collider collider;
     collider.shape.form = MeshShape{path.string(), 10, std::nullopt};
     collider.thickness = thickness;
-    scene::Space space;
+    model::Space space;
     space.spacing = spacing;
     try {
       collider_region(collider, space, Meshes(Meshes::Say::log));

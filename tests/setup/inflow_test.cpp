@@ -118,7 +118,7 @@ TEST(Inflow, TheLedgerClosesWithWhatComesAndGoes) {
   SimulateOptions options;
   options.folder = folder;
   options.strict = true;
-  simulate(scene.description(), {scene.file(), {}}, options);
+  simulate(scene.model(), {scene.file(), {}}, options);
   const Ledger ledger = read_ledger(folder / "ledger.csv");
   double came = 0, went = 0;
   for (const LedgerRow& row : ledger.rows) came += row.values.at("entered_mass"), went += row.values.at("left_mass");
@@ -138,7 +138,7 @@ TEST(Inflow, BitsDoNotDependOnThreadsOrRestarts) {
       [](Simulation& s) {
         // Edits number their particles after those that came in.
         const std::size_t before = s.particle_count();
-        s.add({"drop", "water", SceneShape::sphere({0.2, 0.2, 0.1}, 0.02)});
+        s.add({"drop", "water", Shape::sphere({0.2, 0.2, 0.1}, 0.02)});
         const ParticleView view = s.particles("water");
         EXPECT_GT(view.size(), before);
         EXPECT_EQ(std::adjacent_find(view.id.begin(), view.id.end()), view.id.end());
@@ -271,7 +271,7 @@ TEST(Inflow, AColliderTakesOutWhatTouchesIt) {
   options.folder = folder;
   options.frames = 26;
   options.strict = true;
-  simulate(scene.description(), {scene.file(), {}}, options);
+  simulate(scene.model(), {scene.file(), {}}, options);
   const Series came = read_series(folder / "probes" / "came.csv"), burnt = read_series(folder / "probes" / "burnt.csv"),
                there = read_series(folder / "probes" / "there.csv");
   const double in = came.rows.back().at(3), out = burnt.rows.back().at(3);

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dreampm/backend/registry.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -23,8 +23,10 @@ Scene pool(const std::string& more = "") {
       "pool.yaml");
 }
 
-NewRigid crate(const std::string& name, double density, const Vec3d& at, const Vec3d& spin = {}) {
-  return {name, SceneShape::yaml("{box: {size: [0.12, 0.12, 0.12]}}"), density, at, {}, spin};
+model::Collider crate(const std::string& name, double density, const Vec3d& at, const Vec3d& spin = {}) {
+  model::Collider body{name, Shape{BoxShape{{0.12, 0.12, 0.12}}, {0, 1, 0}, 0, at}};
+  body.friction = 0.4, body.rigid = {.density = density, .spin = spin};
+  return body;
 }
 
 std::string refusal(const std::function<void()>& edit) {
@@ -42,7 +44,7 @@ TEST(ColliderEdits, ARigidBodyThatComesInIsTheSameAsOneOfTheScene) {
                                "[0.2, 0.3, 0.2], spin: [0, 1, 0]}}\n"),
                           quiet(1, backend)),
         added(pool(), quiet(1, backend));
-    added.add_rigid(crate("crate", 400, {0.2, 0.3, 0.2}, {0, 1, 0}));
+    added.add(crate("crate", 400, {0.2, 0.3, 0.2}, {0, 1, 0}));
     EXPECT_EQ(added.scene().yaml(), from_scene.scene().yaml());
     const ColliderState a = from_scene.collider("crate"), b = added.collider("crate");
     EXPECT_NEAR(b.mass, 400 * 0.12 * 0.12 * 0.12, 1e-9);
@@ -57,8 +59,8 @@ TEST(ColliderEdits, ARigidBodyThatComesInIsTheSameAsOneOfTheScene) {
 TEST(ColliderEdits, ACrateFloatsAndABrickSinks) {
   Simulation s(pool(), quiet(2));
   s.advance_to(0.1);
-  s.add_rigid(crate("crate", 400, {0.1, 0.3, 0.2}));
-  s.add_rigid(crate("brick", 1800, {0.3, 0.3, 0.2}));
+  s.add(crate("crate", 400, {0.1, 0.3, 0.2}));
+  s.add(crate("brick", 1800, {0.3, 0.3, 0.2}));
   s.advance_to(1.5);
   // Of a crate two fifths are under water, which has risen by what both displace.
   EXPECT_GT(s.collider("crate").twist.center.y, 0.11);
@@ -85,16 +87,16 @@ TEST(ColliderEdits, GiveTheSameBitsForAnyNumberOfThreadsAndAfterASnapshot) {
         }
       };
       step(6);
-      s.add_rigid(crate("low", 400, {0.2, 0.22, 0.2}));
+      s.add(crate("low", 400, {0.2, 0.22, 0.2}));
       step(6);
-      s.add_rigid(crate("high", 900, {0.2, 0.34, 0.21}, {0, 0, 1}));
+      s.add(crate("high", 900, {0.2, 0.34, 0.21}, {0, 0, 1}));
       s.hold("low", {{0.26, 0.27, 0.2}, {0.3, 0.25, 0.2}, 300, 10});
       step(12);
-      s.add_collider({"wall", SceneShape::box({0.41, -1, -1}, {1, 1, 1})});
+      s.add({"wall", Shape::box({0.41, -1, -1}, {1, 1, 1})});
       s.set_motion("wall", {{-0.3, 0, 0}, {}, {}});
       step(12);
       s.let_go("low");
-      s.remove_rigid("high");
+      s.remove_collider("high");
       step(4);
       s.remove_collider("wall");
       step(4);
@@ -110,9 +112,9 @@ TEST(ColliderEdits, AMovingColliderWithSlackPushesAlike) {
   double middle[2];
   for (int n = 0; n < 2; ++n) {
     Simulation s(pool(), quiet(2));
-    NewCollider wall{"wall", SceneShape::box({0.4, -1, -1}, {1, 1, 1})};
-    wall.slack = n == 0 ? 0.02 : 0.1;
-    s.add_collider(wall);
+    const double slack = n == 0 ? 0.02 : 0.1;
+    s.add({"wall", Shape::box({0.4, -1, -1}, {1, 1, 1})});
+    s.set_slack("wall", slack);
     s.set_motion("wall", {{-0.25, 0, 0}, {}, {}});
     s.advance_to(0.4);
     s.set_motion("wall", {});
@@ -121,7 +123,7 @@ TEST(ColliderEdits, AMovingColliderWithSlackPushesAlike) {
     for (const Vec3f& p : s.particles("water").position)
       x += static_cast<double>(p.x), most = std::max(most, static_cast<double>(p.x));
     middle[n] = x / static_cast<double>(s.particle_count());
-    EXPECT_LT(most, 0.3 + 0.1 * 0.04) << wall.slack;
+    EXPECT_LT(most, 0.3 + 0.1 * 0.04) << slack;
     EXPECT_EQ(s.particle_count(), 20u * 20 * 6);
   }
   EXPECT_NEAR(middle[0], middle[1], 0.01);
@@ -134,28 +136,30 @@ TEST(ColliderEdits, SayWhatIsWrong) {
       quiet());
   s.advance_to(0.02);
   const std::uint64_t before = s.hash();
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("raft", 400, {0.1, 0.3, 0.1})); }), HasSubstr("give another"));
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("water", 400, {0.1, 0.3, 0.1})); }), HasSubstr("give another"));
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("a", 400, {0.3, 0.33, 0.3})); }), HasSubstr("inside of raft"));
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("a", 400, {0.1, 0.1, 0.1})); }), HasSubstr("particles lie inside of it"));
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("a", 400, {0.02, 0.3, 0.1})); }), HasSubstr("outside the wall x_min"));
-  EXPECT_THAT(refusal([&] { s.add_rigid(crate("a", 1e9, {0.1, 0.3, 0.1})); }), HasSubstr("density"));
-  EXPECT_THAT(refusal([&] { s.add_rigid({"a", SceneShape::yaml("{box: {size: [0.1, 0.1, 0.1]}}")}); }),
-              HasSubstr("position"));
-  EXPECT_THAT(refusal([&] { s.remove_rigid("boat"); }), HasSubstr("it has raft"));
-  EXPECT_THAT(refusal([&] { s.remove_rigid("raft"); }), HasSubstr("probes.track"));
+  EXPECT_THAT(refusal([&] { s.add(crate("raft", 400, {0.1, 0.3, 0.1})); }), HasSubstr("give another"));
+  EXPECT_THAT(refusal([&] { s.add(crate("water", 400, {0.1, 0.3, 0.1})); }), HasSubstr("give another"));
+  EXPECT_THAT(refusal([&] { s.add(crate("a", 400, {0.3, 0.33, 0.3})); }), HasSubstr("inside of raft"));
+  EXPECT_THAT(refusal([&] { s.add(crate("a", 400, {0.1, 0.1, 0.1})); }), HasSubstr("particles lie inside of it"));
+  EXPECT_THAT(refusal([&] { s.add(crate("a", 400, {0.02, 0.3, 0.1})); }), HasSubstr("outside the wall x_min"));
+  EXPECT_THAT(refusal([&] { s.add(crate("a", 1e9, {0.1, 0.3, 0.1})); }), HasSubstr("density"));
+  model::Collider nowhere = crate("a", 400, {});
+  nowhere.shape.center.reset();
+  EXPECT_THAT(refusal([&] { s.add(nowhere); }), HasSubstr("position"));
+  model::Collider pinned = crate("a", 400, {0.1, 0.3, 0.1});
+  pinned.motion.emplace();
+  EXPECT_THAT(refusal([&] { s.add(pinned); }), HasSubstr("rigid.a.motion is only for colliders"));
+  EXPECT_THAT(refusal([&] { s.remove_collider("boat"); }), HasSubstr("it has raft"));
+  EXPECT_THAT(refusal([&] { s.remove_collider("raft"); }), HasSubstr("probes.track"));
   EXPECT_THAT(refusal([&] { s.hold("boat", {{}, {}, 1, 1}); }), HasSubstr("it has raft"));
   EXPECT_THAT(refusal([&] { s.hold("raft", {{}, {}, 0, 1}); }), HasSubstr("stiffness above 0"));
-  EXPECT_THAT(refusal([&] { s.add_collider({"a", SceneShape::box({0, 0, 0}, {0.1, 0.1, 0.1})}); }),
+  EXPECT_THAT(refusal([&] { s.add({"a", Shape::box({0, 0, 0}, {0.1, 0.1, 0.1})}); }),
               HasSubstr("particles lie inside of it"));
-  EXPECT_THAT(refusal([&] { s.add_collider({"a", SceneShape::box({0.25, 0.3, 0.25}, {0.3, 0.4, 0.3})}); }),
+  EXPECT_THAT(refusal([&] { s.add({"a", Shape::box({0.25, 0.3, 0.25}, {0.3, 0.4, 0.3})}); }),
               HasSubstr("rigid body raft starts"));
-  EXPECT_THAT(refusal([&] { s.add_collider({"a", SceneShape::box({0, 0.3, 0}, {0.1, 0.4, 0.1}), "sticky"}); }),
-              HasSubstr("stick"));
-  NewCollider loose{"a", SceneShape::box({0, 0.3, 0}, {0.1, 0.4, 0.1})};
-  loose.slack = 0.5;
-  EXPECT_THAT(refusal([&] { s.add_collider(loose); }), HasSubstr("0.25 cells"));
-  EXPECT_THAT(refusal([&] { s.remove_collider("raft"); }), HasSubstr("remove_rigid"));
+  model::Collider rough{"a", Shape::box({0, 0.3, 0}, {0.1, 0.4, 0.1})};
+  rough.type = WallType::stick, rough.friction = 0.2;
+  EXPECT_THAT(refusal([&] { s.add(rough); }), HasSubstr("colliders.a.friction is only for type separate and slip"));
+  EXPECT_THAT(refusal([&] { s.set_slack("raft", 0.5); }), HasSubstr("0.25 cells"));
   EXPECT_EQ(s.hash(), before) << "what is refused changes nothing";
 }
 
@@ -163,18 +167,18 @@ TEST(ColliderEdits, SayWhatIsWrong) {
 // gives way by m g / k.
 TEST(ColliderEdits, MatterComesInWhereNothingStandsNow) {
   Simulation s(pool(), quiet(2));
-  s.add_rigid(crate("crate", 400, {0.1, 0.3, 0.2}));
-  s.add_collider({"post", SceneShape::box({0.26, 0.2, 0.16}, {0.34, 0.4, 0.24})});
+  s.add(crate("crate", 400, {0.1, 0.3, 0.2}));
+  s.add({"post", Shape::box({0.26, 0.2, 0.16}, {0.34, 0.4, 0.24})});
   s.advance_to(0.3);
   ASSERT_LT(s.collider("crate").twist.center.y, 0.2) << "it has fallen";
-  s.add({"drop", "water", SceneShape::box({0.06, 0.3, 0.16}, {0.14, 0.36, 0.24})});
-  EXPECT_THAT(refusal([&] { s.add({"in post", "water", SceneShape::box({0.28, 0.3, 0.18}, {0.32, 0.36, 0.22})}); }),
+  s.add({"drop", "water", Shape::box({0.06, 0.3, 0.16}, {0.14, 0.36, 0.24})});
+  EXPECT_THAT(refusal([&] { s.add({"in post", "water", Shape::box({0.28, 0.3, 0.18}, {0.32, 0.36, 0.22})}); }),
               HasSubstr("post"));
 }
 
 TEST(ColliderEdits, AHeldBodyHangsFromThePointThatIsHeld) {
   Simulation s(pool(), quiet());
-  s.add_rigid(crate("crate", 400, {0.2, 0.22, 0.2}));
+  s.add(crate("crate", 400, {0.2, 0.22, 0.2}));
   const double k = 5e3, m = s.collider("crate").mass;
   const Vec3d corner{0.26, 0.28, 0.2}, to{0.22, 0.33, 0.2};
   s.hold("crate", {s.collider("crate").pose.inverse(corner), to, k, 60});
@@ -193,7 +197,7 @@ TEST(ColliderEdits, AHeldBodyHangsFromThePointThatIsHeld) {
 TEST(ColliderEdits, AHoldIsStableHoweverStiffItIs) {
   for (const double k : {1e2, 1e5, 1e9}) {
     Simulation s(pool(), quiet());
-    s.add_rigid(crate("crate", 400, {0.2, 0.3, 0.2}));
+    s.add(crate("crate", 400, {0.2, 0.3, 0.2}));
     s.hold("crate", {{0.26, 0.3, 0.26}, {0.3, 0.32, 0.2}, k, 0.02 * k});
     for (int n = 0; n < 150; ++n) {
       s.step();
@@ -207,7 +211,7 @@ TEST(ColliderEdits, OneMaterialBecomesAnotherWhereItIs) {
                     "velocity: [0, -1, 0], pool: 500}}\n"),
                quiet());
   s.advance_to(0.05);
-  s.add_material("honey", "{type: newtonian, preset: honey, bulk_modulus: 2.0e5}");
+  s.add_material(parse_material("{type: newtonian, preset: honey, bulk_modulus: 2.0e5}", "honey"));
   const ParticleView before = s.particles("water");
   const std::vector<std::uint32_t> ids(before.id.begin(), before.id.end());
   const std::vector<Vec3f> velocity(before.velocity.begin(), before.velocity.end());

@@ -18,7 +18,7 @@ using namespace test;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-scene::SceneDescription pool(const std::string& body, const std::string& more) {
+model::Scene pool(const std::string& body, const std::string& more) {
   const auto parsed = scene::parse_scene_text(
       "dreampm: 1\nname: pool\nspace: {max: [0.4, 0.3, 0.2], spacing: 0.01}\ntime: {fps: 50, frames: 10}\n"
       "materials: {water: {type: newtonian}}\nbodies:\n  pool: {material: water, " +
@@ -106,7 +106,7 @@ TEST(Cut, OfAllOfABodyIsRefused) {
 
 TEST(Cut, IsKeptInASceneAndGoesWithItsCollider) {
   const std::string solids = "colliders: {post: {shape: " + post + "}, paddle: {shape: " + paddle + "}}\n";
-  const scene::SceneDescription there = pool(block + ", cut: [post, paddle]", solids);
+  const model::Scene there = pool(block + ", cut: [post, paddle]", solids);
   const auto again = scene::parse_scene_text(scene::emit_scene(there), "again.yaml");
   ASSERT_TRUE(again.ok()) << again.text();
   EXPECT_EQ(again.scene.bodies[0].cut, (std::vector<std::string>{"post", "paddle"}));
@@ -114,9 +114,9 @@ TEST(Cut, IsKeptInASceneAndGoesWithItsCollider) {
             scene::scene_hash(pool(block + ", cut: [post]", solids), scene::Part::simulation));
   Simulation s(Scene(there, "pool.yaml"), quiet());
   s.remove_collider("paddle");
-  s.remove(SceneShape::box({0, 0, 0}, {0.05, 0.3, 0.2}));
+  s.remove(Shape::box({0, 0, 0}, {0.05, 0.3, 0.2}));
   s.set_gravity({0, -1, 0});
-  EXPECT_EQ(s.scene().description().bodies[0].cut, std::vector<std::string>{"post"});
+  EXPECT_EQ(s.scene().model().bodies[0].cut, std::vector<std::string>{"post"});
   s.step();
 }
 

@@ -9,7 +9,7 @@
 namespace dreampm {
 namespace {
 
-SceneDescription with_crate(const std::string& render) {
+model::Scene with_crate(const std::string& render) {
   const scene::ParseResult r = scene::parse_scene_text(
       "dreampm: 1\nname: x\nspace: {min: [0, 0, 0], max: [1, 1, 1], spacing: 0.05}\n"
       "materials: {water: {type: newtonian}}\n"
@@ -30,7 +30,7 @@ Pose turned() {
 }
 
 TEST(DrawnColliders, TheGrainGoesWithTheBody) {
-  const SceneDescription scene = with_crate("{looks: {crate: {type: wood, ring: 0.01}}}");
+  const model::Scene scene = with_crate("{looks: {crate: {type: wood, ring: 0.01}}}");
   const ColliderModels models(scene, {0.1, 0.1, 0.1});
   const std::vector<Pose> rest{Pose{}}, poses{turned()};
   const DrawnColliders before = models.at(rest, 0), after = models.at(poses, 0);
@@ -45,7 +45,7 @@ TEST(DrawnColliders, TheGrainGoesWithTheBody) {
 }
 
 TEST(DrawnColliders, ThePlaneOfTheCutStaysWhereItIs) {
-  const SceneDescription scene =
+  const model::Scene scene =
       with_crate("{cut: {point: [0.6, 0, 0], normal: [2, 0, 0], of: [crate]}, looks: {crate: {type: wood}}}");
   const ColliderModels models(scene, {0.1, 0.1, 0.1});
   const auto reach = [&](const Pose& pose) {
@@ -62,7 +62,7 @@ TEST(DrawnColliders, ThePlaneOfTheCutStaysWhereItIs) {
 }
 
 TEST(DrawnColliders, OnlyWhatIsNamedIsCut) {
-  const SceneDescription scene = with_crate("{cut: {point: [0.6, 0, 0], normal: [1, 0, 0], of: [water]}}");
+  const model::Scene scene = with_crate("{cut: {point: [0.6, 0, 0], normal: [1, 0, 0], of: [water]}}");
   EXPECT_FALSE(cut_of(scene, "crate", {}));
   ASSERT_TRUE(cut_of(scene, "water", {0.1, 0, 0}));
   EXPECT_NEAR(cut_of(scene, "water", {0.1, 0, 0})->point.x, 0.5, 1e-12);

@@ -7,7 +7,7 @@
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -135,7 +135,7 @@ TEST(Edits, MatterThatComesInIsCounted) {
   s.advance_to(0.1);
   EXPECT_EQ(s.totals().particles, after.particles);
   // Ids are not used again.
-  s.remove(SceneShape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
+  s.remove(Shape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
   EXPECT_EQ(s.particle_count(), 0u);
   EXPECT_NEAR(s.totals().removed_mass, after.mass, 1e-9);
   s.add(ball("second", {0.05, 0.16, 0.08}));
@@ -154,10 +154,10 @@ TEST(Edits, RemoveTakesWhatLiesInside) {
     for (const Vec3f& p : s.particles(material).position) inside += length(p - Vec3f{0.12f, 0.05f, 0.08f}) < 0.05f;
   ASSERT_GT(inside, 10u);
   const std::size_t all = s.particle_count();
-  EXPECT_EQ(s.remove(SceneShape::sphere({0.12, 0.05, 0.08}, 0.05)), inside);
+  EXPECT_EQ(s.remove(Shape::sphere({0.12, 0.05, 0.08}, 0.05)), inside);
   EXPECT_EQ(s.particle_count(), all - inside);
   EXPECT_EQ(s.totals().removed, inside);
-  EXPECT_EQ(s.remove(SceneShape::sphere({0.12, 0.05, 0.08}, 0.05)), 0u);
+  EXPECT_EQ(s.remove(Shape::sphere({0.12, 0.05, 0.08}, 0.05)), 0u);
   s.advance_to(0.08);
   EXPECT_EQ(s.particle_count(), all - inside);
 }
@@ -170,7 +170,7 @@ TEST(Edits, GoBesideCollidersAndProbes) {
   s.advance_to(0.01);
   EXPECT_THAT(refusal([&] { s.add(ball("within", {0.2, 0.06, 0.04})); }), HasSubstr("lie within collider post"));
   s.add(ball("beside", {0.05, 0.16, 0.08}));
-  EXPECT_GT(s.remove(SceneShape::box({0, 0, 0}, {0.05, 0.05, 0.05})), 0u);
+  EXPECT_GT(s.remove(Shape::box({0, 0, 0}, {0.05, 0.05, 0.05})), 0u);
   s.set_parameter("jelly", "youngs_modulus", 3e4);
   s.advance_to(0.02);
 }
@@ -193,7 +193,7 @@ TEST(Edits, OfGravityLeaveTheGridOfExplicitStepsAsItIs) {
 
 TEST(Edits, WallsOpen) {
   Simulation s(dam_and_jelly(), quiet());
-  s.set_wall(Side::x_min, "open");
+  s.set_wall(Side::x_min, {WallType::open});
   s.set_gravity({-30, 0, 0});
   s.advance_to(0.4);
   EXPECT_GT(s.totals().left, 100u);
@@ -233,7 +233,7 @@ double any_value(const Param& p, Dice& dice) {
 
 TEST(Edits, AWordsNumberIsTheWord) {
   Simulation s(dam_and_jelly(), quiet());
-  const auto gamma = [&] { return s.scene().description().materials[0].values["gamma"]; };
+  const auto gamma = [&] { return s.scene().model().materials[0].values["gamma"]; };
   s.set_parameter("water", "gamma", -1);
   EXPECT_EQ(gamma(), -1) << "linear";
   s.set_parameter("water", "gamma", 7);
@@ -254,21 +254,20 @@ TEST(Edits, AnyOfThemLeaveTheSimulationSound) {
       };
       if (kind < 0.5) {
         const char* const name = dice.uniform() < 0.5 ? "water" : "jelly";
-        const auto& material = s.scene().description().materials[name[0] == 'w' ? 0 : 1];
-        const Param& p =
-            material.info
-                ->params[static_cast<std::size_t>(dice.uniform() * static_cast<double>(material.info->params.size()))];
+        const auto& material = s.scene().model().materials[name[0] == 'w' ? 0 : 1];
+        const Param& p = info_of(material).params[static_cast<std::size_t>(
+            dice.uniform() * static_cast<double>(info_of(material).params.size()))];
         SCOPED_TRACE(fmt::format("seed {} edit {}: {}.{}", seed, edit, name, p.key));
         ASSERT_NO_THROW(s.set_parameter(name, p.key, any_value(p, dice)));
       } else if (kind < 0.6) {
         s.set_gravity((Vec3d{dice.uniform(), dice.uniform(), dice.uniform()} - Vec3d{0.5, 0.5, 0.5}) * 40);
       } else if (kind < 0.7) {
-        constexpr const char* types[] = {"separate", "slip", "stick"};
-        s.set_wall(static_cast<Side>(dice.uniform() * 6), types[static_cast<int>(dice.uniform() * 3)]);
+        const auto side = static_cast<Side>(dice.uniform() * 6);
+        s.set_wall(side, {static_cast<WallType>(dice.uniform() * 3)});
       } else if (kind < 0.8) {
         s.add(ball(fmt::format("ball{}", ++balls), place()));
       } else if (kind < 0.9) {
-        s.remove(SceneShape::sphere(place(), 0.03));
+        s.remove(Shape::sphere(place(), 0.03));
       } else {
         s.reset_state(dice.uniform() < 0.5 ? "water" : "jelly");
       }
@@ -331,15 +330,15 @@ TEST(Edits, AMaterialMoreFillsBodiesAndGoesWithASnapshot) {
     Simulation s(dam_and_jelly(), quiet(1, backend));
     s.advance_to(0.01);
     const Snapshot before = s.snapshot();
-    s.add_material("snow", "{type: snow}");
+    s.add_material({"snow", "snow"});
     EXPECT_EQ(s.particles("snow").size(), 0u);
-    s.add({"heap", "snow", SceneShape::box({0.02, 0.14, 0.02}, {0.1, 0.18, 0.1})});
+    s.add({"heap", "snow", Shape::box({0.02, 0.14, 0.02}, {0.1, 0.18, 0.1})});
     const std::size_t snow = s.particles("snow").size();
     EXPECT_GT(snow, 10u);
     s.advance_steps(5);
     EXPECT_EQ(s.particles("snow").size(), snow);
-    EXPECT_THAT(refusal([&] { s.add_material("snow", "{type: snow}"); }), HasSubstr("already"));
-    EXPECT_THAT(refusal([&] { s.add_material("ice", "{type: snwo}"); }), HasSubstr("did you mean 'snow'"));
+    EXPECT_THAT(refusal([&] { s.add_material({"snow", "snow"}); }), HasSubstr("already"));
+    EXPECT_THAT(refusal([&] { s.add_material({"ice", "snwo"}); }), HasSubstr("did you mean 'snow'"));
     s.restore(before);
     EXPECT_EQ(s.scene().materials().size(), 2u);
     s.step();
@@ -378,12 +377,14 @@ TEST(Edits, RefuseWhatASceneWouldRefuseAndChangeNothing) {
   EXPECT_THAT(refusal([&] { s.set_parameter("milk", "viscosity", 1); }), HasSubstr("it has water, jelly"));
   EXPECT_THAT(refusal([&] { s.set_parameter("water", "viscosity", std::nan("")); }), HasSubstr("viscosity"));
   EXPECT_THAT(refusal([&] { s.set_gravity({0, INFINITY, 0}); }), HasSubstr("gravity"));
-  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "sticky"); }), HasSubstr("stick"));
-  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, "slip", -0.5); }), HasSubstr("friction"));
+  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, {WallType::stick, 0.5}); }),
+              HasSubstr("space.walls.x_min.friction is only for type separate and slip"));
+  EXPECT_THAT(refusal([&] { s.set_wall(Side::x_min, {WallType::slip, -0.5}); }), HasSubstr("friction"));
   EXPECT_THAT(refusal([&] { s.add(ball("cube", {0.19, 0.16, 0.08})); }), HasSubstr("cube"));
   EXPECT_THAT(refusal([&] { s.add(ball("out", {0.23, 0.16, 0.08})); }), HasSubstr("outside the wall x_max"));
-  EXPECT_THAT(refusal([&] { s.add({"b", "jelly", SceneShape::yaml("{spher: {radius: 1}}")}); }), HasSubstr("sphere"));
-  EXPECT_THAT(refusal([&] { s.remove(SceneShape::yaml("{sphere: {radius: -1}}")); }), HasSubstr("radius"));
+  EXPECT_THAT(refusal([&] { s.add({"b", "jelly", Shape::sphere({0.1, 0.1, 0.1}, -1)}); }),
+              HasSubstr("bodies.b.shape.sphere.radius is -1: must be above 0 m"));
+  EXPECT_THAT(refusal([&] { s.remove(Shape::sphere({}, -1)); }), HasSubstr("radius"));
   EXPECT_THAT(refusal([&] { s.add_particles("water", std::vector<Vec3d>{{0.1, 0.1, 0.1}, {0.3, 0, 0}}, {}); }),
               HasSubstr("a particle at (0.3, 0, 0) m is outside of the walls"));
   EXPECT_THAT(refusal([&] { s.add_particles("oil", std::vector<Vec3d>{{0.1, 0.1, 0.1}}, {}); }), HasSubstr("oil"));

@@ -17,7 +17,7 @@ namespace dreampm {
 namespace {
 namespace fs = std::filesystem;
 
-SceneDescription scene_of(const std::string& rest) {
+model::Scene scene_of(const std::string& rest) {
   const auto parsed = scene::parse_scene_text("dreampm: 1\nname: blown\n" + rest, "blown.yaml");
   if (!parsed.ok()) throw InputError(parsed.text());
   return parsed.scene;

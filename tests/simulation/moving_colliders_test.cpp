@@ -23,7 +23,7 @@ using testing::HasSubstr;
 /// A scene that steps, and what its first collider gave to the matter.
 struct Moved : Observer<float> {
   explicit Moved(const std::string& yaml)
-      : start(assemble(parse_scene(yaml, "moving.yaml").description(), "moving.yaml")),
+      : start(assemble(parse_scene(yaml, "moving.yaml").model(), "moving.yaml")),
         engine(as_world<float>(start.world), make_cpu_backend("auto")) {
     engine.add(*this);
     engine.begin(start.seeds);
@@ -334,7 +334,7 @@ TEST(MovingColliders, BadMotionsAreRefused) {
   s.set_motion("thing", {{0, 0.5, 0}, {}, {}});
   s.advance_to(0.2);
   const auto above = [](double y) {
-    return NewBody{"drop", "matter", SceneShape::box({0.16, y, 0.06}, {0.24, y + 0.04, 0.14})};
+    return model::Body{"drop", "matter", Shape::box({0.16, y, 0.06}, {0.24, y + 0.04, 0.14})};
   };
   EXPECT_THAT(refusal([&] { s.add(above(0.29)); }), HasSubstr("collider thing"));
   s.add(above(0.19));

@@ -9,8 +9,8 @@
 #include <set>
 
 #include "dreampm/base/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/pictures/frames.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/setup/start.h"
 #include "dreampm/simulation/simulation_impl.h"
@@ -163,11 +163,18 @@ TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
   EXPECT_EQ(s.hash(), hash);
 }
 
+/// As dense as water.
+model::Collider cork(const Shape& shape) {
+  model::Collider body{"cork", shape};
+  body.friction = 0.4, body.rigid = {.density = 1000};
+  return body;
+}
+
 TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndWhatTheSolverCannotDoNot) {
   Simulation s = liquid_of(basin(dam));
   s.advance_frames(3);
   s.set_gravity({3, -9, 0});
-  s.add({"drop", "water", SceneShape::sphere({0.3, 0.3, 0.1}, 0.04), {0, -1, 0}, {}});
+  s.add({"drop", "water", Shape::sphere({0.3, 0.3, 0.1}, 0.04), {0, -1, 0}, {}});
   const std::size_t count = s.particle_count();
   s.advance_frames(5);
   EXPECT_EQ(s.particle_count(), count);
@@ -176,13 +183,14 @@ TEST(ProjectionScenes, GravityAndMatterMayBeEditedAndWhatTheSolverCannotDoNot) {
     EXPECT_THAT(edit, ThrowsMessage<InputError>(HasSubstr(what)));
   };
   refused([&] { s.set_parameter("water", "tension", 1); }, "tension");
-  refused([&] { s.add_material("oil", "{type: newtonian, density: 900, viscosity: 0.001002}"); }, "differ in density");
+  refused([&] { s.add_material({"oil", "newtonian", {{"density", 900}, {"viscosity", 0.001002}}}); },
+          "differ in density");
   EXPECT_EQ(s.hash(), before) << "what was refused has changed something";
   s.set_parameter("water", "viscosity", 20);
-  s.add_rigid({"cork", SceneShape::sphere({0.3, 0.3, 0.1}, 0.04)});
-  s.set_wall(Side::x_min, "stick");
-  s.add_material("drift", "{type: snow, preset: powdery}");
-  s.add({"lump", "drift", SceneShape::sphere({0.1, 0.3, 0.1}, 0.03), {}, {}});
+  s.add(cork(Shape::sphere({0.3, 0.3, 0.1}, 0.04)));
+  s.set_wall(Side::x_min, {WallType::stick});
+  s.add_material({"drift", "snow", preset("snow", "powdery")});
+  s.add({"lump", "drift", Shape::sphere({0.1, 0.3, 0.1}, 0.03), {}, {}});
   s.advance_frames(1);
 }
 
@@ -199,19 +207,19 @@ TEST(ProjectionScenes, EveryEditGivesTheSameBitsOnAnyThreadsAndFromASnapshot) {
         s.step();
         if (step == 3) s.set_parameter("water", "viscosity", 2);
         if (step == 5) s.set_gravity({3, -9, 1});
-        if (step == 7) s.set_wall(Side::z_max, "slip");
-        if (step == 9) s.add({"drop", "water", SceneShape::sphere({0.3, 0.3, 0.1}, 0.04), {0, -1, 0}, {}});
+        if (step == 7) s.set_wall(Side::z_max, {WallType::slip});
+        if (step == 9) s.add({"drop", "water", Shape::sphere({0.3, 0.3, 0.1}, 0.04), {0, -1, 0}, {}});
         if (step == 11) s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
-        if (step == 13) s.add_rigid({"cork", SceneShape::sphere({0.1, 0.34, 0.1}, 0.04)});
+        if (step == 13) s.add(cork(Shape::sphere({0.1, 0.34, 0.1}, 0.04)));
         if (step == 15) middle = s.snapshot();
         if (step == 17) s.lift_brush("hand"), s.reset_state("water");
         if (step == 19) s.set_motion("post", {{0.1, 0, 0}, {0, 2, 0}, {0.3, 0.1, 0.1}});
         if (step == 21) s.add_particles("water", std::vector<Vec3d>{{0.02, 0.38, 0.08}, {0.06, 0.38, 0.1}}, {0, -2, 0});
-        if (step == 23) s.remove(SceneShape::box({0, 0, 0}, {0.06, 0.2, 0.1}));
-        if (step == 25) s.add_collider({"shelf", SceneShape::box({0.3, 0.34, 0.1}, {0.36, 0.4, 0.16})});
+        if (step == 23) s.remove(Shape::box({0, 0, 0}, {0.06, 0.2, 0.1}));
+        if (step == 25) s.add({"shelf", Shape::box({0.3, 0.34, 0.1}, {0.36, 0.4, 0.16})});
         if (step == 27) s.hold("cork", {{0.1, 0.34, 0.1}, {0.2, 0.3, 0.1}, 40, 2});
         if (step == 29) s.set_parameter("water", "density", 900), s.remove_collider("shelf");
-        if (step == 31) s.let_go("cork"), s.remove_rigid("cork");
+        if (step == 31) s.let_go("cork"), s.remove_collider("cork");
       }
       return s.hash();
     };

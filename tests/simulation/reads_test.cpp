@@ -72,11 +72,11 @@ TEST_P(Reads, Gravity) {
 }
 
 TEST_P(Reads, Walls) {
-  EXPECT_EQ(simulation->wall(Side::x_max).type, "separate");
-  simulation->set_wall(Side::x_max, "separate", 0.3), simulation->set_wall(Side::y_max, "open");
+  EXPECT_EQ(simulation->wall(Side::x_max).type, WallType::separate);
+  simulation->set_wall(Side::x_max, {WallType::separate, 0.3}), simulation->set_wall(Side::y_max, {WallType::open});
   expect_kept([](const Simulation& s, const char* when) {
     EXPECT_EQ(s.wall(Side::x_max).friction, 0.3) << when;
-    EXPECT_EQ(s.wall(Side::y_max).type, "open") << when;
+    EXPECT_EQ(s.wall(Side::y_max).type, WallType::open) << when;
     EXPECT_EQ(s.wall(Side::x_min).friction, 0) << when;
   });
 }
@@ -114,7 +114,7 @@ TEST_P(Reads, ColliderMotionAndSlack) {
     EXPECT_EQ(plate.twist.velocity, (Vec3d{0.1, 0, 0})) << when;
     EXPECT_EQ(plate.twist.spin, (Vec3d{0, 0, 1})) << when;
     EXPECT_EQ(plate.slack, 0.1) << when;
-    EXPECT_EQ(plate.type, "slip") << when;
+    EXPECT_EQ(plate.type, WallType::slip) << when;
     EXPECT_EQ(plate.friction, 0.2) << when;
     EXPECT_TRUE(plate.moves && !plate.is_rigid && !plate.deforms) << when;
     EXPECT_TRUE(s.collider("crate").is_rigid) << when;
@@ -170,12 +170,14 @@ TEST_P(Reads, NamesOfWhatThereIsAndOfWhatIsAdded) {
   EXPECT_THAT(names.emitters, ElementsAre("tap"));
   EXPECT_THAT(names.sinks, ElementsAre("drain"));
   EXPECT_THAT(names.probes, ElementsAre("level"));
-  simulation->add_collider({"shelf", SceneShape::box({0, 0.36, 0}, {0.05, 0.38, 0.2})});
-  simulation->add_rigid(
-      {.name = "ball", .shape = SceneShape::sphere({0.15, 0.25, 0.1}, 0.03), .friction = 0.7, .restitution = 0.3});
+  simulation->add({"shelf", Shape::box({0, 0.36, 0}, {0.05, 0.38, 0.2})});
+  simulation->add(model::Collider{.name = "ball",
+                                  .shape = Shape::sphere({0.15, 0.25, 0.1}, 0.03),
+                                  .friction = 0.7,
+                                  .rigid = model::Rigid{.density = 1000, .restitution = 0.3}});
   EXPECT_EQ(simulation->collider("ball").friction, 0.7);
   EXPECT_EQ(simulation->collider("ball").restitution, 0.3);
-  simulation->add({"drop", "water", SceneShape::sphere({0.1, 0.2, 0.1}, 0.03)});
+  simulation->add({"drop", "water", Shape::sphere({0.1, 0.2, 0.1}, 0.03)});
   names = simulation->names();
   EXPECT_THAT(names.colliders, testing::UnorderedElementsAre("plate", "shelf", "crate", "ball"));
   EXPECT_THAT(names.rigid, ElementsAre("crate", "ball"));
@@ -189,10 +191,10 @@ TEST_P(Reads, NamesOfWhatThereIsAndOfWhatIsAdded) {
 }
 
 TEST_P(Reads, CountsAreThoseOfTheTotals) {
-  simulation->remove(SceneShape::box({0.1, 0, 0}, {0.2, 0.4, 0.2}));
+  simulation->remove(Shape::box({0.1, 0, 0}, {0.2, 0.4, 0.2}));
   simulation->advance_to(0.1);
   // They are taken out a box's width behind the wall.
-  simulation->set_wall(Side::x_max, "open");
+  simulation->set_wall(Side::x_max, {WallType::open});
   simulation->set_gravity({40, -9.81, 0});
   simulation->advance_to(0.4);
   const ParticleCounts counts = simulation->counts();
@@ -243,7 +245,7 @@ TEST_P(Reads, AVisitSeesEachParticleOnce) {
 TEST_P(Reads, WhatComesInHasNewIds) {
   const std::uint32_t before = simulation->next_id();
   const std::size_t count = simulation->particle_count();
-  simulation->remove(SceneShape::box({0, 0, 0}, {0.1, 0.1, 0.1}));
+  simulation->remove(Shape::box({0, 0, 0}, {0.1, 0.1, 0.1}));
   simulation->advance_to(0.1);
   std::size_t fresh = 0;
   for (const std::uint32_t id : simulation->particles("water").id) fresh += id >= before;

@@ -8,7 +8,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "scenes.h"
 
 namespace dreampm {
@@ -75,7 +75,7 @@ TEST_F(Save, GoesOnToTheSameBitsWithThingsThatMove) {
   s.set_motion("slab", {{-0.5, 0, 0}, {}, {}});
   s.advance_steps(10);
   s.set_motion("slab", {});
-  s.add_collider({"plate", SceneShape::box({0.02, 0.24, 0.02}, {0.06, 0.28, 0.18})});
+  s.add({"plate", Shape::box({0.02, 0.24, 0.02}, {0.06, 0.28, 0.18})});
   s.advance_frames(5);
   ASSERT_GT(s.frame(), 3);
   expect_same_future(s);
@@ -96,11 +96,11 @@ TEST_F(Save, AMomentForAFinerScene) {
   Simulation s(dam_and_jelly(), quiet());
   s.advance_steps(30);
   std::filesystem::create_directories(folder);
-  SceneDescription denser = s.scene().description();
-  denser.space.asked_max = denser.space.max, denser.space.spacing /= 2;
+  model::Scene denser = s.scene().model();
+  denser.space.max = denser.space.end(), denser.space.spacing /= 2;
   denser.bodies.clear();
-  s.save_moment(folder / "finer.h5", Scene(denser, "finer"));
   denser.start = (folder / "finer.h5").string();
+  s.save_moment(folder / "finer.h5", Scene(denser, "finer"));
   Simulation finer(Scene(denser, "finer"), quiet());
   EXPECT_EQ(finer.particle_count(), 8 * s.particle_count());
   EXPECT_EQ(finer.time(), s.time());

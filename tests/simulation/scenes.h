@@ -42,8 +42,8 @@ inline SimulationOptions quiet(int threads = 1, const std::string& backend = "cp
 }
 
 /// A ball of jelly that falls and turns.
-inline NewBody ball(const std::string& name, const Vec3d& center) {
-  return {name, "jelly", SceneShape::sphere(center, 0.03), {0, -1, 0}, {0, 0, 5}};
+inline model::Body ball(const std::string& name, const Vec3d& center) {
+  return {name, "jelly", Shape::sphere(center, 0.03), {0, -1, 0}, {0, 0, 5}};
 }
 
 /// Every kind of edit of dam_and_jelly, at given steps. `each(step)` is called after each of 60
@@ -54,16 +54,17 @@ void script(Simulation& s, const Each& each) {
     s.step();
     if (step == 5) s.set_parameter("water", "viscosity", 2);
     if (step == 10) s.set_gravity({3, -9, 1});
-    if (step == 15) s.set_wall(Side::z_max, "slip");
+    if (step == 15) s.set_wall(Side::z_max, {WallType::slip});
     if (step == 20) s.set_parameter("jelly", "youngs_modulus", 1e5), s.set_parameter("jelly", "density", 800);
     if (step == 25) s.add(ball("ball", {0.19, 0.16, 0.08}));
     if (step == 30) s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
     if (step == 35) s.reset_state("jelly");
     if (step == 40)
-      s.lift_brush("hand"), s.add_material("honey", "{type: newtonian, preset: honey, bulk_modulus: 2.0e5}");
-    if (step == 42) s.add({"drop", "honey", SceneShape::sphere({0.06, 0.17, 0.08}, 0.02)});
+      s.lift_brush("hand"),
+          s.add_material(parse_material("{type: newtonian, preset: honey, bulk_modulus: 2.0e5}", "honey"));
+    if (step == 42) s.add({"drop", "honey", Shape::sphere({0.06, 0.17, 0.08}, 0.02)});
     if (step == 44) s.add_particles("water", std::vector<Vec3d>{{0.21, 0.18, 0.08}, {0.21, 0.18, 0.11}}, {0, -2, 0});
-    if (step == 45) s.remove(SceneShape::box({0, 0, 0}, {0.04, 0.2, 0.08}));
+    if (step == 45) s.remove(Shape::box({0, 0, 0}, {0.04, 0.2, 0.08}));
     each(step);
   }
 }

@@ -8,6 +8,7 @@
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/hash.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/io/run_record.h"
 #include "dreampm/io/series.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/render.h"
@@ -25,7 +26,7 @@ TEST(Simulation, GivesTheBitsOfARunOfTheSameScene) {
   SimulateOptions options;
   options.folder = folder;
   options.frames = 4;
-  simulate(scene.description(), {scene.file(), {}}, options);
+  simulate(scene.model(), {scene.file(), {}}, options);
   const RunRecord record = RunRecord::load(folder / "run.json");
   Simulation simulation(scene, quiet());
   std::vector<std::string> hashes;
@@ -49,7 +50,7 @@ TEST(Simulation, ProbesHaveTheRowsOfARunAndGoBackWithIt) {
   SimulateOptions options;
   options.folder = folder;
   options.frames = 5;
-  simulate(scene.description(), {scene.file(), {}}, options);
+  simulate(scene.model(), {scene.file(), {}}, options);
   for (const std::string backend : {"cpu", "reference"}) {
     Simulation simulation(scene, quiet(1, backend));
     EXPECT_EQ(simulation.probe("level").time, std::vector<double>{0});
@@ -130,7 +131,7 @@ TEST(Simulation, AViewKeepsTheParticlesAsTheyWere) {
   simulation->advance_steps(3);
   EXPECT_NE(simulation->particles("water").position[0], from[0]);
   EXPECT_TRUE(same());
-  simulation->remove(SceneShape::box({0, 0, 0}, {1, 1, 1}));
+  simulation->remove(Shape::box({0, 0, 0}, {1, 1, 1}));
   EXPECT_TRUE(same());
   simulation.reset();
   EXPECT_TRUE(same());
@@ -142,7 +143,7 @@ TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
   const Vec3f water = color("water", 0), jelly = color("jelly", 0);
   EXPECT_GT(water.z, water.x) << "water is blue";
   const std::size_t count = s.particles("jelly").size();
-  s.add({"red", "jelly", SceneShape::sphere({0.05, 0.16, 0.08}, 0.03), {}, {}, Vec3d{1, 0, 0}});
+  s.add({"red", "jelly", Shape::sphere({0.05, 0.16, 0.08}, 0.03), {}, {}, Vec3d{1, 0, 0}});
   EXPECT_EQ(color("jelly", count - 1), jelly);
   EXPECT_EQ(color("jelly", count), (Vec3f{1, 0, 0}));
 }
@@ -150,8 +151,8 @@ TEST(Simulation, ParticlesHaveTheColorOfTheirBody) {
 TEST(Simulation, PicturesShowTheColorOfABodyThatWasAdded) {
   const auto reddish = [](const std::optional<Vec3d>& color) {
     Simulation s(dam_and_jelly().with({"render.looks.jelly={type: opaque, color: [0.5, 0.5, 0.5]}"}), quiet());
-    s.remove(SceneShape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
-    s.add({"ball", "jelly", SceneShape::sphere({0.12, 0.1, 0.08}, 0.07), {}, {}, color});
+    s.remove(Shape::box({0, 0, 0}, {0.24, 0.2, 0.16}));
+    s.add({"ball", "jelly", Shape::sphere({0.12, 0.1, 0.08}, 0.07), {}, {}, color});
     const RgbImage image = render(s, {.width = 64, .height = 36, .samples = 4});
     std::size_t count = 0;
     for (std::size_t p = 0; p < image.pixels.size(); p += 3) count += image.pixels[p] > 2 * image.pixels[p + 1];

@@ -39,7 +39,7 @@ class Start : public testing::Test {
 
   /// The scene of dam_and_jelly from that moment on, with values laid over it.
   Scene scene(const std::vector<std::string>& set = {}) {
-    scene::SceneDescription description = dam_and_jelly().description();
+    model::Scene description = dam_and_jelly().model();
     description.bodies.clear();
     description.start = "moment.h5";
     const std::filesystem::path file = folder / "scene.yaml";
@@ -79,7 +79,7 @@ TEST_F(Start, OfAnEditedSceneGoesOnFromTheSameParticles) {
 TEST_F(Start, TakesEditsAsOtherSimulationsDo) {
   Simulation second(scene(), quiet());
   const std::size_t before = second.particle_count();
-  second.add({"more", "water", SceneShape::box({0.02, 0.14, 0.04}, {0.08, 0.18, 0.08})});
+  second.add({"more", "water", Shape::box({0.02, 0.14, 0.04}, {0.08, 0.18, 0.08})});
   EXPECT_GT(second.particle_count(), before);
   second.advance_steps(5);
   const Snapshot now = second.snapshot();
@@ -89,7 +89,7 @@ TEST_F(Start, TakesEditsAsOtherSimulationsDo) {
 TEST_F(Start, ARunBeginsWithThatFrameAndGoesOnFromItsCheckpoints) {
   const Scene from = scene({"time.frames=12", "output.checkpoint={every: 2}"});
   const int begin = first->frame();
-  EXPECT_EQ(first_frame(from.description()), begin);
+  EXPECT_EQ(first_frame(from.model()), begin);
   ASSERT_GT(begin, 1);
   ASSERT_LT(begin, 10);
   std::vector<std::string> hashes;
@@ -102,9 +102,9 @@ TEST_F(Start, ARunBeginsWithThatFrameAndGoesOnFromItsCheckpoints) {
   SimulateOptions options;
   options.folder = folder / "run";
   options.frames = 10;
-  simulate(from.description(), {from.file(), {}}, options);
+  simulate(from.model(), {from.file(), {}}, options);
   options.frames.reset(), options.resume = true;
-  simulate(from.description(), {from.file(), {}}, options);
+  simulate(from.model(), {from.file(), {}}, options);
   const RunRecord record = RunRecord::load(folder / "run" / "run.json");
   ASSERT_EQ(record.frames.size(), static_cast<std::size_t>(12 - begin + 1));
   for (std::size_t i = 0; i < hashes.size(); ++i) {
@@ -117,10 +117,10 @@ TEST_F(Start, AFilmIsOfItsFramesAndIsUpToDateAfterwards) {
   const Scene from =
       scene({fmt::format("time.frames={}", first->frame() + 1), "render.size=[64, 48]", "render.samples=4"});
   const MakeOptions options{.folder = folder / "film"};
-  EXPECT_TRUE(make(from.description(), {from.file(), {}}, options));
+  EXPECT_TRUE(make(from.model(), {from.file(), {}}, options));
   EXPECT_TRUE(std::filesystem::exists(folder / "film" / (from.name() + ".mp4")));
-  EXPECT_FALSE(make(from.description(), {from.file(), {}}, options));
-  const Preflight needs = preflight(from.description(), from.file());
+  EXPECT_FALSE(make(from.model(), {from.file(), {}}, options));
+  const Preflight needs = preflight(from.model(), from.file());
   EXPECT_EQ(needs.particles, first->particle_count());
 }
 
@@ -142,13 +142,13 @@ TEST_F(Start, AFilmDrawsWhatWasDraggedWhereItStands) {
   const double moved = dragged.collider("slab").pose.position.x;
   ASSERT_LT(moved, -0.1);
   dragged.save_moment(folder / "slab.h5");
-  scene::SceneDescription next = text.description();
+  model::Scene next = text.model();
   next.bodies.clear();
   next.start = "slab.h5", next.time.frames = dragged.frame();
   replace_file_text(folder / "slab.yaml", Scene(std::move(next), (folder / "slab.yaml").string()).yaml());
   const Scene from = load_scene(folder / "slab.yaml");
   const MakeOptions options{.folder = folder / "slab"};
-  ASSERT_TRUE(make(from.description(), {from.file(), {}}, options));
+  ASSERT_TRUE(make(from.model(), {from.file(), {}}, options));
   const RunRecord record = RunRecord::load(folder / "slab" / "run.json");
   ASSERT_EQ(record.frames.size(), 1U);
   ASSERT_EQ(record.frames[0].poses.count("slab"), 1U);

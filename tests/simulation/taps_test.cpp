@@ -58,15 +58,15 @@ TEST(Taps, GiveNothingInsideOfALidThatAProgramPutThere) {
   for (const bool rigid : {false, true}) {
     Simulation s = of(tap_room(tap()));
     s.advance_to(0.1);
-    s.remove(SceneShape::box({0, 0, 0}, {0.6, 0.4, 0.2}));
-    const auto lid = SceneShape::box({0.22, 0.16, 0.02}, {0.42, 0.34, 0.18});
+    s.remove(Shape::box({0, 0, 0}, {0.6, 0.4, 0.2}));
+    const auto lid = Shape::box({0.22, 0.16, 0.02}, {0.42, 0.34, 0.18});
     if (rigid) {
-      NewRigid body{"lid", lid};
-      body.density = 500;
-      s.add_rigid(body);
+      model::Collider body{"lid", lid};
+      body.rigid = {.density = 500};
+      s.add(body);
       s.hold("lid", {{0.32, 0.25, 0.1}, {0.32, 0.25, 0.1}, 1e5, 1e3});
     } else {
-      s.add_collider({"lid", lid});
+      s.add({"lid", lid});
     }
     s.advance_to(0.4);
     EXPECT_EQ(s.particle_count(), 0u) << rigid;

@@ -38,6 +38,7 @@ struct Scene {
         {"body", world.sets.size(), static_cast<std::uint32_t>(count()), static_cast<std::uint32_t>(body.size())});
     frame->sets.emplace_back().material = std::string(material);
     add_set(world, material, std::move(values), spacing);
+    world.sets.back().name = fmt::format("m{}", world.sets.size());
     seeds.push_back(std::move(body));
   }
   std::size_t count() const {
@@ -48,6 +49,7 @@ struct Scene {
   void start() {
     begin(world, *backend, seeds);
     motion = initial_velocities(world, seeds);
+    frame->colliders = world.colliders;
   }
   std::unique_ptr<Probe<float>> probe(ProbeForm form) const {
     return make_probe<float>({"p", 0, std::move(form)}, {*frame, seeds, bodies, spacing, {}});
@@ -224,7 +226,7 @@ TEST(Force, OnTheFloorIsTheWeightAndOnASideThePush) {
   s.world.gravity = {0, -g, 0};
   s.start();
   still_water.press(s.world, s.seeds[0]);
-  const auto floor = s.probe(ForceProbe{"floor", 2, -1}), wall = s.probe(ForceProbe{"x_max", 1, -1});
+  const auto floor = s.probe(ForceProbe{"floor"}), wall = s.probe(ForceProbe{"x_max"});
   EXPECT_FALSE(s.sample(*floor)) << "a mean needs an interval";
   for (int i = 0; i < 1500; ++i) {  // 0.3 s: sound goes up and down 7 times
     s.report = step<float>(s.world, *s.backend, &s.motion, 0);
@@ -260,7 +262,7 @@ TEST(Force, OnAColliderIsWhatItHolds) {
   s.world.gravity = {0, -g, 0};
   s.world.settings.damping = 20;
   s.start();
-  const auto floor = s.probe(ForceProbe{"floor", 2, -1}), on = s.probe(ForceProbe{"table", -1, 0});
+  const auto floor = s.probe(ForceProbe{"floor"}), on = s.probe(ForceProbe{"table"});
   s.run(0.3);
   for (int i = 0; i < 1000; ++i) {
     s.report = step<float>(s.world, *s.backend, &s.motion, 0);
@@ -279,13 +281,13 @@ TEST(Extent, OfABoxAndNotOfItsSpray) {
   s.add("newtonian", water(), {{0.4, 0.12, 0.12}, {0.41, 0.13, 0.13}}, still());
   s.start();
   for (std::uint8_t a = 0; a < 3; ++a) {
-    const auto ends = s.look(*s.probe(ExtentProbe{a, 0}));
+    const auto ends = s.look(*s.probe(ExtentProbe{a, "m1"}));
     EXPECT_NEAR(ends[0], box.min[a], 1e-6) << int(a);
     EXPECT_NEAR(ends[1], box.max[a], 1e-6) << int(a);
   }
-  const auto all = s.look(*s.probe(ExtentProbe{0, -1}));
+  const auto all = s.look(*s.probe(ExtentProbe{0}));
   EXPECT_NEAR(all[1], box.max.x, 1e-6) << "one drop is no front";
-  EXPECT_TRUE(std::isnan(s.look(*s.probe(ExtentProbe{0, 1}))[1])) << "half a cell is no layer";
+  EXPECT_TRUE(std::isnan(s.look(*s.probe(ExtentProbe{0, "m2"}))[1])) << "half a cell is no layer";
 }
 
 TEST(Extent, EndsAtAClosedWallButNotAtAnOpenOne) {
@@ -306,7 +308,7 @@ TEST(Extent, EndsAtAClosedWallButNotAtAnOpenOne) {
     s.start();
     for (std::uint8_t a = 0; a < 3; ++a) {
       SCOPED_TRACE(int(a) + 10 * open);
-      const auto ends = s.look(*s.probe(ExtentProbe{a, 0}));
+      const auto ends = s.look(*s.probe(ExtentProbe{a, "m1"}));
       EXPECT_LT(middles.min[a] - spacing / 2, -1e-3) << "without the walls";
       // Positions are floats.
       EXPECT_NEAR(ends[0], open ? middles.min[a] - spacing / 2 : 0, 1e-7);
@@ -322,8 +324,8 @@ TEST(Extent, KnowsNoWallsAlongAPeriodicAxis) {
   s.add("elastic", jelly(), lattice({{0, 0, 0}, {0.16, 0.16, 0.16}}, spacing, still()));
   for (ParticleSeed& n : s.seeds[0]) n.position = n.position + Vec3d{-0.002, -0.002, 0};
   s.start();
-  EXPECT_NEAR(s.look(*s.probe(ExtentProbe{0, 0}))[0], -0.002, 1e-7);
-  EXPECT_NEAR(s.look(*s.probe(ExtentProbe{1, 0}))[0], 0, 1e-7);
+  EXPECT_NEAR(s.look(*s.probe(ExtentProbe{0}))[0], -0.002, 1e-7);
+  EXPECT_NEAR(s.look(*s.probe(ExtentProbe{1}))[0], 0, 1e-7);
 }
 
 TEST(Point, OfABodyThatTurnsAndStretches) {
@@ -332,7 +334,7 @@ TEST(Point, OfABodyThatTurnsAndStretches) {
   s.add("elastic", jelly(), box, still());
   s.start();
   const Vec3d tip{0.4, 0.32, 0.16}, inner{0.2313, 0.3, 0.151};
-  const auto at_tip = s.probe(PointProbe{0, tip}), at_inner = s.probe(PointProbe{0, inner});
+  const auto at_tip = s.probe(PointProbe{"body", tip}), at_inner = s.probe(PointProbe{"body", inner});
   // x -> A x + b, by hand: a quarter turn and a stretch.
   const Mat3d a{{0.9, -0.4, 0.02, 0.45, 1.05, 0, 0.01, 0.03, 0.97}};
   const Vec3d b{0.15, 0.02, 0.01};
@@ -362,9 +364,9 @@ TEST(Point, OfABodyThatTurnsAndStretches) {
 TEST(Point, WhereTheBodyIsNotIsRefused) {
   Scene s({32, 32, 16}, WallType::open);
   s.add("newtonian", water(), {{0.2, 0.28, 0.12}, {0.4, 0.36, 0.2}}, still());
-  EXPECT_EQ(s.probe(PointProbe{0, {0.4, 0.36, 0.2}})->columns().size(), 3u) << "a liquid keeps no F";
+  EXPECT_EQ(s.probe(PointProbe{"body", {0.4, 0.36, 0.2}})->columns().size(), 3u) << "a liquid keeps no F";
   try {
-    s.probe(PointProbe{0, {0.43, 0.3, 0.15}});
+    s.probe(PointProbe{"body", {0.43, 0.3, 0.15}});
     FAIL();
   } catch (const InputError& e) {
     EXPECT_NE(std::string(e.what()).find("probe p: at [0.43, 0.3, 0.15] the body body has no matter"),
@@ -381,7 +383,7 @@ TEST(Probes, ForcesDoNotDependOnTheThreads) {
     s.world.gravity = {1, -9.81, 2};
     s.add("newtonian", water(), {{0, 0, 0}, {0.16, 0.1, 0.16}}, still());
     s.start();
-    const auto floor = s.probe(ForceProbe{"floor", 2, -1});
+    const auto floor = s.probe(ForceProbe{"floor"});
     s.run(0.01, floor.get());
     all.push_back(s.look(*floor));
   }

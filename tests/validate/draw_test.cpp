@@ -58,22 +58,22 @@ TEST(Draw, NoStepIsShorterThanTheShortest) {
 }
 
 TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
-  std::set<std::string_view> materials;
-  std::set<std::size_t> transfers;
+  std::set<std::string> materials;
+  std::set<std::string> transfers;
   bool open = false, skin = false;
   double lowest = 1, highest = 0;
   for (int i = 0; i < 60; ++i) {
     const Draw d = draw_scene(1, i);
     const double first = d.scene.materials[0].values["density"], second = d.scene.materials[1].values["density"];
     EXPECT_LE(std::max(first / second, second / first), 10 * (1 + 1e-4)) << d.text;
-    for (const auto& m : d.scene.materials) materials.insert(m.info->name), transfers.insert(m.transfer.index());
+    for (const auto& m : d.scene.materials) materials.insert(m.type), transfers.insert(m.transfer);
     for (const auto& w : d.scene.space.walls) open = open || w.type == WallType::open, skin = skin || w.skin_friction;
     for (const auto& b : d.scene.bodies) EXPECT_LE(length(b.velocity), std::sqrt(2 * 9.81) * (1 + 1e-4));
     EXPECT_GT(d.dt_floor, 0);
     lowest = std::min(lowest, d.scene.time.cfl), highest = std::max(highest, d.scene.time.cfl);
   }
   EXPECT_EQ(materials.size(), material_infos().size());
-  EXPECT_EQ(transfers.size(), std::variant_size_v<AnyTransfer>);
+  EXPECT_EQ(transfers.size(), 3u);
   EXPECT_TRUE(open);
   EXPECT_TRUE(skin);
   EXPECT_LT(lowest, 0.1);

@@ -42,7 +42,7 @@ TEST(Cases, HaveNamesAndSourcesAndAreFound) {
 TEST(Scenes, EveryBuiltInOneAssembles) {
   EXPECT_GE(scene_names().size(), 5u);
   for (const std::string& name : scene_names()) {
-    const SceneDescription scene = built_in_scene(name);
+    const model::Scene scene = built_in_scene(name);
     EXPECT_EQ(scene.name, name);
     EXPECT_FALSE(scene.about.empty());
     // A flow that turns on the spot draws a lattice out into lines, one along a floor keeps it in
@@ -204,7 +204,7 @@ TEST(Report, RealCasesPass) {
 /// What the page says of a scene is what the scene says.
 TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   const auto set_up = [](const std::vector<std::string>& overrides, const char* name = "dam-break-1") {
-    const SceneDescription scene = built_in_scene(name, overrides);
+    const model::Scene scene = built_in_scene(name, overrides);
     return set_up_of(scene, assemble(scene, "").world);
   };
   const std::string usual = set_up({});
@@ -213,7 +213,7 @@ TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   EXPECT_THAT(set_up({"bodies.column.sample.pattern=lattice"}), HasSubstr("on a lattice"));
   EXPECT_THAT(set_up({"space.walls.all.type=stick"}, "bar-wave-elastic"), HasSubstr("walls stick"));
   EXPECT_THAT(set_up({}, "rigid-float"), HasSubstr("box (rigid, 500 kg/m^3)"));
-  SceneDescription weighed = built_in_scene("rigid-momentum");
+  model::Scene weighed = built_in_scene("rigid-momentum");
   weighed.colliders.at(0).rigid->density.reset(), weighed.colliders.at(0).rigid->mass = 2;
   EXPECT_THAT(set_up_of(weighed, assemble(weighed, "").world), HasSubstr("cube (rigid, 2 kg)"));
   EXPECT_THAT(set_up({"space.periodic=[z]", "space.walls.all={type: separate, friction: 0.3}"}, "bar-wave-elastic"),

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 /// What stops the strict run of a draw; empty if nothing does.
 std::string stopped_by(int draw, const std::string& backend, int frames) {
-  SceneDescription scene = draw_scene(1, draw).scene;
+  model::Scene scene = draw_scene(1, draw).scene;
   scene.output.checkpoint_every = 0;
   SimulateOptions options;
   options.folder = fs::path(DM_BINARY_DIR) / "test-files" / ("strict-draw-" + backend + std::to_string(draw));

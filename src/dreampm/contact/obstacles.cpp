@@ -200,6 +200,18 @@ std::unique_ptr<Obstacles::Near> Obstacles::find_beside(const World<R>& world, c
   return near;
 }
 
+bool Obstacles::still_fixed(const std::vector<Collider>& now) const {
+  const auto is_rigid = [](const Collider& c) { return c.rigid; };
+  if (!any_rigid_ && std::any_of(now.begin(), now.end(), is_rigid)) return false;  // no distances are kept for them
+  for (std::size_t c = 0; c < std::max(now.size(), placed_.size()); ++c) {
+    const bool was = c < placed_.size() && !placed_[c].collider.moves(), is = c < now.size() && !now[c].moves();
+    if (was != is) return false;
+    if (is && (placed_[c].collider.shape != now[c].shape || !(placed_[c].collider.surface_pose == now[c].surface_pose)))
+      return false;
+  }
+  return true;
+}
+
 template <class R>
 void Obstacles::place(const World<R>& world) {
   const std::vector<Collider>& now = world.colliders;
@@ -213,7 +225,16 @@ void Obstacles::place(const World<R>& world) {
     for (std::size_t c = 0; c < now.size(); ++c)
       for (std::size_t old = 0; old < placed_.size() && !bodies[c]; ++old)
         if (now[c].rigid && placed_[old].collider.shape == now[c].shape) bodies[c] = bodies_[old];
-    forget();
+    if (still_fixed(now)) {
+      Cache cache = std::move(fixed_cache_);
+      std::vector<Vec3i> blocks = std::move(blocks_);
+      std::vector<const Near*> fixed = std::move(fixed_);
+      const bool any_thin = any_thin_;
+      forget();
+      fixed_cache_ = std::move(cache), blocks_ = std::move(blocks), fixed_ = std::move(fixed), any_thin_ = any_thin;
+    } else {
+      forget();
+    }
     bodies_.swap(bodies);
   }
   placed_.resize(now.size());

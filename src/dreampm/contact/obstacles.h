@@ -83,6 +83,9 @@ class Obstacles {
   /// Takes over where the colliders stand, and forgets what is no longer true.
   template <class R>
   void place(const World<R>& world);
+  /// Whether those that stand are the same, by the same numbers, so that what is known of them
+  /// alone stays true.
+  bool still_fixed(const std::vector<Collider>& now) const;
   template <class R>
   void find_fixed(const World<R>& world);
   /// Those that move, of the driven ones or of the rigid bodies, in place of what `by_block_` has.

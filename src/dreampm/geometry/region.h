@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/geometry/shape.h"
 #include "dreampm/math/mat3.h"
 #include "dreampm/math/vec.h"
+#include "dreampm/shape.h"
 
 namespace dreampm {
 

@@ -4,14 +4,9 @@
 #include <vector>
 
 #include "dreampm/geometry/region.h"
+#include "dreampm/model/matter.h"
 
 namespace dreampm {
-
-enum class Pattern {
-  jitter,   ///< the centers of cubic cells, each moved by up to a quarter of the spacing along every axis
-  lattice,  ///< the centers of cubic cells
-  poisson   ///< random points that keep 0.89 spacings apart and leave no room for another (geometry/poisson.h)
-};
 
 /// Points inside `region` [m] at a number density of 1/spacing^3. The cells are centered on the
 /// region's bounds, so a box whose sides are whole spacings is filled flush, and a moved region

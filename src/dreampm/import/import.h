@@ -5,8 +5,8 @@
 #include <string>
 
 #include "dreampm/geometry/model.h"
-#include "dreampm/geometry/shape.h"
 #include "dreampm/import/point_cloud.h"
+#include "dreampm/shape.h"
 
 namespace dreampm {
 

@@ -5,15 +5,9 @@
 #include <cstddef>
 #include <span>
 
-namespace dreampm {
+#include "dreampm/model/motion.h"
 
-/// T: anything with + and * by a double.
-template <class T>
-struct Key {
-  double t = 0;  ///< s
-  T value{};
-  friend bool operator==(const Key&, const Key&) = default;
-};
+namespace dreampm {
 
 /// The value at time `t` [s]. `keys`: at least one, t strictly ascending.
 template <class T>

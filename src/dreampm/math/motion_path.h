@@ -5,19 +5,10 @@
 #include <numbers>
 #include <vector>
 
+#include "dreampm/model/motion.h"
 #include "dreampm/pose.h"
 
 namespace dreampm {
-
-/// Where a shape stands at a time: moved by `position` from where the scene gives it, and turned
-/// about the path's center.
-struct PoseKey {
-  double t = 0;                ///< s
-  Vec3d position{};            ///< m
-  Vec3d rotate_axis{0, 1, 0};  ///< need not have unit length
-  double rotate_angle = 0;     ///< degrees
-  bool operator==(const PoseKey&) const = default;
-};
 
 struct MotionPath {
   std::vector<PoseKey> keys;  ///< by time; before the first and after the last the shape stands still

@@ -1,16 +1,11 @@
 // Contact of a grid node with a wall or collider, from numbers alone.
 #pragma once
-#include <cstdint>
-
 #include "dreampm/math/explog.h"
 #include "dreampm/math/scalar.h"
 #include "dreampm/math/vec.h"
+#include "dreampm/walls.h"
 
 namespace dreampm {
-
-/// open: no wall; separate: may leave, must not enter; slip: neither enters nor leaves; stick:
-/// moves with the wall.
-enum class WallType : std::uint8_t { separate, slip, stick, open };
 
 /// Coulomb friction along a surface of normal `n`: takes up to `most` > 0 [m/s] of the tangential
 /// velocity `v`.

@@ -34,4 +34,27 @@ struct FieldList {
 using Fields = FieldList<Drag, Wind, Attractor, Brush>;
 using AnyField = Fields::Any;
 
+/// The formula of a checked scene's field.
+inline AnyField make_field(const model::ForceField& given) {
+  AnyField field;
+  Fields::for_each([&]<class F>() {
+    if (F::name == given.type) field = with_members<F>(given.numbers, given.vectors);
+  });
+  return field;
+}
+/// As a scene says it, every value explicit; without its name and box.
+inline model::ForceField as_model(const AnyField& field) {
+  model::ForceField out;
+  std::visit(
+      [&]<class F>(const F& f) {
+        out.type = F::name;
+        for (const MemberParam<F>& p : F::params) {
+          if (p.number) out.numbers.set(p.key, f.*p.number);
+          if (p.vector) out.vectors.insert_or_assign(std::string(p.key), f.*p.vector);
+        }
+      },
+      field);
+  return out;
+}
+
 }  // namespace dreampm

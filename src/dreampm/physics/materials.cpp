@@ -91,4 +91,9 @@ const MaterialInfo* find_material(std::string_view name) {
   return nullptr;
 }
 
+const MaterialInfo& info_of(const model::Material& material) {
+  if (const MaterialInfo* info = find_material(material.type)) return *info;
+  throw std::out_of_range("no material of type " + material.type);
+}
+
 }  // namespace dreampm

@@ -3,11 +3,10 @@
 #pragma once
 #include <cmath>
 #include <limits>
-#include <map>
 #include <span>
-#include <stdexcept>
-#include <string>
 #include <string_view>
+
+#include "dreampm/model/matter.h"
 
 namespace dreampm {
 
@@ -56,30 +55,6 @@ struct MaterialInfo {
   }
 };
 
-/// Parameter values by key, complete once `with_defaults` was called. NaN: derive it.
-class Values {
- public:
-  void set(std::string_view key, double v) { values_.insert_or_assign(std::string(key), v); }
-  bool has(std::string_view key) const {
-    auto it = values_.find(key);
-    return it != values_.end() && !std::isnan(it->second);
-  }
-  /// Throws std::out_of_range for a key that is not there.
-  double operator[](std::string_view key) const {
-    const auto it = values_.find(key);  // at() would make a string of it
-    if (it == values_.end()) throw std::out_of_range("no value of " + std::string(key));
-    return it->second;
-  }
-  void with_defaults(std::span<const Param> params) {
-    for (const Param& p : params) values_.try_emplace(std::string(p.key), p.value);
-  }
-  auto begin() const { return values_.begin(); }
-  auto end() const { return values_.end(); }
-
- private:
-  std::map<std::string, double, std::less<>> values_;
-};
-
 /// What a set of values comes to, for matter at rest.
 struct MaterialFacts {
   double sound_speed;          ///< m/s
@@ -94,5 +69,7 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values);
 std::span<const MaterialInfo> material_infos();
 /// The material of that name, or null.
 const MaterialInfo* find_material(std::string_view name);
+/// That of a checked scene's material. Throws std::out_of_range for a type that is not in the list.
+const MaterialInfo& info_of(const model::Material& material);
 
 }  // namespace dreampm

@@ -21,4 +21,22 @@ struct TransferList {
 using Transfers = TransferList<Apic, Flip, Asflip>;
 using AnyTransfer = Transfers::Any;
 
+/// Whether any transfer takes this key.
+inline bool is_transfer_key(std::string_view key) {
+  bool found = false;
+  Transfers::for_each([&]<class T>() {
+    for (const MemberParam<T>& p : T::params) found = found || p.key == key;
+  });
+  return found;
+}
+
+/// The transfer of that name, `apic` for one that is not in the list, with these of its numbers.
+inline AnyTransfer make_transfer(std::string_view name, const Values& values) {
+  AnyTransfer transfer = Apic{};
+  Transfers::for_each([&]<class T>() {
+    if (T::name == name) transfer = with_members<T>(values);
+  });
+  return transfer;
+}
+
 }  // namespace dreampm

@@ -12,20 +12,20 @@ namespace {
 /// before a wall, and their surface ends about as far before them as behind.
 constexpr double wetting_spacings = 1.5;
 
-const scene::Look& look_of(const SceneDescription& scene, int material) {
+const model::Look& look_of(const model::Scene& scene, int material) {
   return scene.render.looks.at(scene.materials[static_cast<std::size_t>(material)].name);
 }
 
 }  // namespace
 
-std::vector<int> meshed_materials(const SceneDescription& scene) {
+std::vector<int> meshed_materials(const model::Scene& scene) {
   std::vector<int> list;
   for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m)
-    if (look_of(scene, m).type != scene::LookType::spheres) list.push_back(m);
+    if (look_of(scene, m).type != model::LookType::spheres) list.push_back(m);
   return list;
 }
 
-MaterialParticles particles_of(const SceneDescription& scene, int material, const ParticleFrame& frame) {
+MaterialParticles particles_of(const model::Scene& scene, int material, const ParticleFrame& frame) {
   const std::string& name = scene.materials[static_cast<std::size_t>(material)].name;
   MaterialParticles out;
   for (std::size_t i = 0; i < frame.size(); ++i)
@@ -36,27 +36,27 @@ MaterialParticles particles_of(const SceneDescription& scene, int material, cons
   return out;
 }
 
-SurfaceInput surface_input(const SceneDescription& scene, const MaterialParticles& particles, const Vec3d& shift) {
+SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift) {
   SurfaceInput input;
   input.positions = particles.position;
   input.velocities = particles.velocity;
   input.spacing = static_cast<float>(scene.space.spacing);
-  input.walls = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.max - shift)};
+  input.walls = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.end() - shift)};
   for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != WallType::open;
   return input;
 }
 
-SurfaceSettings surface_settings(const SceneDescription& scene) {
+SurfaceSettings surface_settings(const model::Scene& scene) {
   const auto spacing = static_cast<float>(scene.space.spacing);
   SurfaceSettings settings;
   // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
   settings.voxel = std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), spacing / 8, 2 * spacing);
   settings.smooth = scene.surface.smooth;
-  settings.keep_field = scene.surface.format == scene::SurfaceFormat::vdb;
+  settings.keep_field = scene.surface.format == model::SurfaceFormat::vdb;
   return settings;
 }
 
-Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
+Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
                  const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
   RenderScene out = render_scene(scene, shift);
   out.wetting = static_cast<float>(wetting_spacings * scene.space.spacing);
@@ -65,9 +65,9 @@ Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::v
   std::list<TriMesh> meshes;
   std::list<std::vector<Vec3f>> arrays;
   for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) {
-    const scene::Look& look = look_of(scene, m);
-    const bool spheres = look.type == scene::LookType::spheres,
-               colored = look.type != scene::LookType::dielectric && many_colored(scene, m);
+    const model::Look& look = look_of(scene, m);
+    const bool spheres = look.type == model::LookType::spheres,
+               colored = look.type != model::LookType::dielectric && many_colored(scene, m);
     std::vector<Vec3f>&positions = arrays.emplace_back(), &colors = arrays.emplace_back();
     if (spheres || colored) {
       const ParticleFrame& frame = content.particles();

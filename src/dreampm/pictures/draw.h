@@ -11,19 +11,19 @@
 namespace dreampm {
 
 /// Materials that are drawn as a mesh, as numbers; the others are drawn as spheres.
-std::vector<int> meshed_materials(const SceneDescription& scene);
+std::vector<int> meshed_materials(const model::Scene& scene);
 
 /// The particles of one material in a frame, in its order.
 struct MaterialParticles {
   std::vector<Vec3f> position;  ///< m, from the frame's shift
   std::vector<Vec3f> velocity;  ///< m/s, or empty
 };
-MaterialParticles particles_of(const SceneDescription& scene, int material, const ParticleFrame& frame);
+MaterialParticles particles_of(const model::Scene& scene, int material, const ParticleFrame& frame);
 
 /// What `reconstruct` wraps. `particles` is borrowed.
-SurfaceInput surface_input(const SceneDescription& scene, const MaterialParticles& particles, const Vec3d& shift);
+SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift);
 /// As the scene's section `surface` says.
-SurfaceSettings surface_settings(const SceneDescription& scene);
+SurfaceSettings surface_settings(const model::Scene& scene);
 
 /// What a picture shows.
 struct FrameContent {
@@ -32,7 +32,7 @@ struct FrameContent {
 };
 
 /// `shift`: where places of the content count from. `bodies`: as in run.json.
-Image draw_frame(const SceneDescription& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
+Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
                  const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings);
 
 }  // namespace dreampm

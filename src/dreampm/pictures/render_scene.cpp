@@ -16,10 +16,11 @@ namespace {
 constexpr int collider_priority = 1;
 
 /// The color that all bodies of the material have, if they agree.
-std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
+std::optional<Vec3d> body_color(const model::Scene& scene, int material) {
+  const std::string& name = scene.materials.at(static_cast<std::size_t>(material)).name;
   std::optional<Vec3d> color;
-  for (const scene::Body& b : scene.bodies) {
-    if (b.material != material) continue;
+  for (const model::Body& b : scene.bodies) {
+    if (b.material != name) continue;
     if (!b.color || (color && !(*color == *b.color))) return std::nullopt;
     color = b.color;
   }
@@ -28,9 +29,9 @@ std::optional<Vec3d> body_color(const SceneDescription& scene, int material) {
 
 /// Whether it is a block of glass that lies across the whole room and beyond it, as a wall that a
 /// hand drags does: what is beyond the panes is not drawn.
-bool ends_at_the_panes(const scene::Collider& c, const scene::Look& look, const Box3d& room) {
+bool ends_at_the_panes(const model::Collider& c, const model::Look& look, const Box3d& room) {
   const auto* const box = std::get_if<BoxShape>(&c.shape.form);
-  if (!box || !c.shape.center || c.shape.rotate_angle != 0 || look.type != scene::LookType::dielectric) return false;
+  if (!box || !c.shape.center || c.shape.rotate_angle != 0 || look.type != model::LookType::dielectric) return false;
   int axes = 0;
   for (int a = 0; a < 3; ++a)
     if (const double middle = (*c.shape.center)[a], half = 0.5 * box->size[a];
@@ -46,14 +47,15 @@ Vec3f clamped(Vec3f v, const Box3d& room) {
 
 }  // namespace
 
-bool many_colored(const SceneDescription& scene, int material) {
+bool many_colored(const model::Scene& scene, int material) {
+  const std::string& name = scene.materials.at(static_cast<std::size_t>(material)).name;
   return !body_color(scene, material) && std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                     [&](const auto& b) { return b.material == material && b.color; });
+                                                     [&](const auto& b) { return b.material == name && b.color; });
 }
 
-BodyColors::BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies) {
+BodyColors::BodyColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies) {
   for (const BodyRecord& r : bodies)
-    for (const scene::Body& b : scene.bodies)
+    for (const model::Body& b : scene.bodies)
       if (b.name == r.name && b.color) ranges_.push_back({r.first_id, r.first_id + r.count, linear_color(*b.color)});
 }
 
@@ -64,7 +66,7 @@ const Vec3f* BodyColors::of(std::int32_t particle) const {
   return range != ranges_.end() && id >= range->first ? &range->color : nullptr;
 }
 
-std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+std::vector<Vec3f> particle_colors(const model::Scene& scene, int material, const ParticleFrame& frame,
                                    const std::vector<BodyRecord>& bodies) {
   const std::string& name = scene.materials[std::size_t(material)].name;
   const Vec3f plain = linear_color(scene.render.looks.at(name).color);
@@ -98,15 +100,15 @@ std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> pos
   return out;
 }
 
-ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift) : shift_(shift) {
-  const Box3d room{scene.space.min, scene.space.max};
+ColliderModels::ColliderModels(const model::Scene& scene, const Vec3d& shift) : shift_(shift) {
+  const Box3d room{scene.space.min, scene.space.end()};
   const Meshes files(Meshes::Say::keep);
-  for (const scene::Collider& c : scene.colliders) {
-    const scene::Look& look = scene.render.looks.at(c.name);
+  for (const model::Collider& c : scene.colliders) {
+    const model::Look& look = scene.render.looks.at(c.name);
     TriMesh mesh;
     if (!c.pin)
       mesh = collider_mesh(c.shape, 0.5 * scene.space.dx(), room, shift, c.thickness,
-                           look.type == scene::LookType::dielectric);
+                           look.type == model::LookType::dielectric);
     std::optional<Vec3f> grain;
     if (look.grain) grain = static_cast<Vec3f>(*look.grain);
     const TextureFrame frame = texture_frame(mesh, grain);
@@ -117,7 +119,7 @@ ColliderModels::ColliderModels(const SceneDescription& scene, const Vec3d& shift
   }
 }
 
-std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift) {
+std::optional<CutPlane> cut_of(const model::Scene& scene, const std::string& name, const Vec3d& shift) {
   const auto& cut = scene.render.cut;
   if (!cut || std::find(cut->of.begin(), cut->of.end(), name) == cut->of.end()) return std::nullopt;
   return CutPlane{cut->point - shift, normalized(cut->normal)};
@@ -173,8 +175,8 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) cons
   return out;
 }
 
-RenderLook material_look(const SceneDescription& scene, int material) {
-  scene::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
+RenderLook material_look(const model::Scene& scene, int material) {
+  model::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
   look.color = body_color(scene, material).value_or(look.color);
   return render_look(look);
 }

@@ -15,15 +15,15 @@
 namespace dreampm {
 
 /// The look of a material. One whose bodies all have one color takes that.
-RenderLook material_look(const SceneDescription& scene, int material);
+RenderLook material_look(const model::Scene& scene, int material);
 
 /// Have the material's bodies different colors? (Those without one have the look's.)
-bool many_colored(const SceneDescription& scene, int material);
+bool many_colored(const model::Scene& scene, int material);
 
 /// The colors that bodies have of their own, linear. `bodies` as in run.json.
 class BodyColors {
  public:
-  BodyColors(const SceneDescription& scene, const std::vector<BodyRecord>& bodies);
+  BodyColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies);
   /// That of the particle's body; null for one without, and for matter of no body.
   const Vec3f* of(std::int32_t particle) const;
 
@@ -37,7 +37,7 @@ class BodyColors {
 
 /// Linear color of each particle of the material, in the frame's order, from the body that it came
 /// from. `bodies` as in run.json.
-std::vector<Vec3f> particle_colors(const SceneDescription& scene, int material, const ParticleFrame& frame,
+std::vector<Vec3f> particle_colors(const model::Scene& scene, int material, const ParticleFrame& frame,
                                    const std::vector<BodyRecord>& bodies);
 
 /// Color of each vertex from the particles around it, the nearer the more; `otherwise` where none
@@ -46,7 +46,7 @@ std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> pos
                                  float spacing, const Vec3f& otherwise);
 
 /// The plane of the scene's cut, if the thing of that name is cut.
-std::optional<CutPlane> cut_of(const SceneDescription& scene, const std::string& name, const Vec3d& shift);
+std::optional<CutPlane> cut_of(const model::Scene& scene, const std::string& name, const Vec3d& shift);
 
 /// Colliders of a picture.
 struct DrawnColliders {
@@ -57,7 +57,7 @@ struct DrawnColliders {
 /// Meshes of a scene's colliders with their looks, made once. `shift`: as render_scene.
 class ColliderModels {
  public:
-  ColliderModels(const SceneDescription& scene, const Vec3d& shift);
+  ColliderModels(const model::Scene& scene, const Vec3d& shift);
   std::size_t size() const { return models_.size(); }
   const std::string& name(std::size_t collider) const { return models_[collider].name; }
   const RenderLook& look(std::size_t collider) const { return models_[collider].look; }

@@ -28,11 +28,11 @@ constexpr double mesh_bytes = 1050;
 constexpr double floor_memory = 4e7, memory_per_mesh_byte = 12;
 constexpr double picture_bytes_per_pixel = 1.5, film_bytes_per_pixel = 0.1;
 
-int frames_of(const SceneDescription& scene) { return scene.time.frames - first_frame(scene) + 1; }
+int frames_of(const model::Scene& scene) { return scene.time.frames - first_frame(scene) + 1; }
 
 }  // namespace
 
-StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles) {
+StageEstimate estimate_stages(const model::Scene& scene, std::size_t particles) {
   const double frames = frames_of(scene), threads = std::max(1, thread_count());
   const double pixels = double(scene.render.width) * scene.render.height;
   StageEstimate e;
@@ -50,14 +50,14 @@ StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particl
   return e;
 }
 
-std::size_t particle_file_bytes(const scene::Output& output) {
+std::size_t particle_file_bytes(const model::Output& output) {
   std::size_t bytes = 29;  // place, velocity, id, material
   for (const std::string& a : output.attributes)
     if (a != "velocity") bytes += a == "f" ? 36 : 4;
   return bytes;
 }
 
-std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles) {
+std::uint64_t disk_estimate(const model::Scene& scene, std::size_t particles) {
   const auto frames = static_cast<std::uint64_t>(frames_of(scene));
   return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
          estimate_stages(scene, particles).disk_bytes;
@@ -71,13 +71,13 @@ std::string disk_shortage(std::uint64_t bytes, const std::filesystem::path& fold
                      1e-6 * static_cast<double>(bytes), 1e-6 * static_cast<double>(left), folder.string());
 }
 
-std::vector<std::string> refused_later(const SceneDescription& scene) {
+std::vector<std::string> refused_later(const model::Scene& scene) {
   std::vector<std::string> list;
-  const Vec3d shift = file_shift(scene.space.min, scene.space.max, scene.space.spacing);
+  const Vec3d shift = file_shift(scene.space.min, scene.space.end(), scene.space.spacing);
   RenderScene picture = render_scene(scene, shift);
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     picture.objects.push_back({RenderSpheres{}, material_look(scene, static_cast<int>(m)), {}});
-  for (const scene::Collider& c : scene.colliders)
+  for (const model::Collider& c : scene.colliders)
     picture.objects.push_back({RenderSpheres{}, render_look(scene.render.looks.at(c.name)), {}});
   try {
     check_render(picture, render_settings(scene));
@@ -85,14 +85,14 @@ std::vector<std::string> refused_later(const SceneDescription& scene) {
     list.push_back(e.what());
   }
   if (meshed_materials(scene).empty()) return list;
-  const scene::Space& space = scene.space;
+  const model::Space& space = scene.space;
   double far = 0;
   for (int a = 0; a < 3; ++a) {
     const auto side = static_cast<std::size_t>(2 * a);
     // Beyond an open wall matter is there for another length of the space.
-    const double length = space.max[a] - space.min[a];
+    const double length = space.end()[a] - space.min[a];
     const double low = space.min[a] - (space.walls[side].type == WallType::open ? length : 0),
-                 high = space.max[a] + (space.walls[side + 1].type == WallType::open ? length : 0);
+                 high = space.end()[a] + (space.walls[side + 1].type == WallType::open ? length : 0);
     far = std::max({far, std::abs(low - shift[a]), std::abs(high - shift[a])});
   }
   if (far > surface_reach * space.spacing)

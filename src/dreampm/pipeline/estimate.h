@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
@@ -22,19 +22,19 @@ struct StageEstimate {
 
 /// From rates measured once on a desktop core, for this machine's number of threads: right within a
 /// factor of about two.
-StageEstimate estimate_stages(const SceneDescription& scene, std::size_t particles);
+StageEstimate estimate_stages(const model::Scene& scene, std::size_t particles);
 
 /// Bytes of one particle in a particle file.
-std::size_t particle_file_bytes(const scene::Output& output);
+std::size_t particle_file_bytes(const model::Output& output);
 
 /// The newest checkpoints of a run that its folder keeps.
 inline constexpr int checkpoints_kept = 2;
 /// Bytes that all stages write.
-std::uint64_t disk_estimate(const SceneDescription& scene, std::size_t particles);
+std::uint64_t disk_estimate(const model::Scene& scene, std::size_t particles);
 /// What is wrong with the room on the file system of a folder that is there; empty if nothing.
 std::string disk_shortage(std::uint64_t bytes, const std::filesystem::path& folder);
 
 /// What surface and render would refuse once the simulation is done, in words.
-std::vector<std::string> refused_later(const SceneDescription& scene);
+std::vector<std::string> refused_later(const model::Scene& scene);
 
 }  // namespace dreampm

@@ -35,7 +35,7 @@ ClipMaterial material_of(const std::string& name, const RenderLook& look) {
 }
 
 /// Where `dreampm render` looks from.
-ClipCamera camera_of(const SceneDescription& scene, const Vec3d& shift, const Axes& axes) {
+ClipCamera camera_of(const model::Scene& scene, const Vec3d& shift, const Axes& axes) {
   const RenderScene view = render_scene(scene, shift);
   const RenderSettings size = render_settings(scene);
   const CameraPlace place = camera_place(view, size);
@@ -191,7 +191,7 @@ fs::path target_of(const RunFolder& run, const ClipInfo& clip, const Format& for
 }
 
 ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::vector<int>& frames) {
-  const SceneDescription& scene = run.scene;
+  const model::Scene& scene = run.scene;
   ClipInfo clip;
   clip.name = scene.name;
   clip.axes = options.axes;

@@ -23,7 +23,7 @@ std::vector<std::string> columns(const std::vector<ColliderHollow>& hollows) {
   return names;
 }
 
-Vec3d up_of(const SceneDescription& scene) {
+Vec3d up_of(const model::Scene& scene) {
   return length(scene.gravity) > 0 ? normalized(-scene.gravity) : Vec3d{0, 1, 0};
 }
 
@@ -70,18 +70,18 @@ ColliderRegions regions_of(const std::vector<Collider>& colliders) {
   return out;
 }
 
-ColliderRegions regions_of(const SceneDescription& scene) {
+ColliderRegions regions_of(const model::Scene& scene) {
   ColliderRegions out;
-  const auto is_container = [](const scene::Collider& c) {
+  const auto is_container = [](const model::Collider& c) {
     return std::holds_alternative<ContainerShape>(c.shape.form);
   };
   if (std::none_of(scene.colliders.begin(), scene.colliders.end(), is_container)) return out;
   const Meshes meshes(Meshes::Say::keep);  // the simulation has said what there is to say
-  for (const scene::Collider& c : scene.colliders) out.push_back(collider_region(c, scene.space, meshes));
+  for (const model::Collider& c : scene.colliders) out.push_back(collider_region(c, scene.space, meshes));
   return out;
 }
 
-std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions) {
+std::vector<ColliderHollow> collider_hollows(const model::Scene& scene, const ColliderRegions& regions) {
   std::vector<ColliderHollow> out;
   const std::vector<Pose> as_given(regions.size());
   for (std::size_t c = 0; c < regions.size(); ++c)
@@ -91,7 +91,7 @@ std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, cons
   return out;
 }
 
-HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions) {
+HollowLines hollow_lines(const model::Scene& scene, const ColliderRegions& regions) {
   HollowLines out;
   for (const ColliderHollow& h : collider_hollows(scene, regions)) {
     const HollowCells& c = h.cells;
@@ -107,7 +107,7 @@ HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& r
   return out;
 }
 
-FillMeter::FillMeter(const SceneDescription& scene, const ColliderRegions& regions)
+FillMeter::FillMeter(const model::Scene& scene, const ColliderRegions& regions)
     : hollows_(collider_hollows(scene, regions)),
       regions_(regions),
       placed_(regions.size()),
@@ -116,10 +116,10 @@ FillMeter::FillMeter(const SceneDescription& scene, const ColliderRegions& regio
       particle_(std::pow(scene.space.spacing, 3)) {
   const Meshes meshes(Meshes::Say::keep);
   if (!hollows_.empty())
-    for (const scene::Collider& c : scene.colliders)
+    for (const model::Collider& c : scene.colliders)
       names_.push_back(c.name), paths_.push_back(motion_path(c.motion, c.shape, scene.space.spacing, meshes));
-  for (const scene::Material& m : scene.materials)
-    if (m.info->liquid) liquids_.push_back(m.name);
+  for (const model::Material& m : scene.materials)
+    if (info_of(m).liquid) liquids_.push_back(m.name);
 }
 
 std::vector<Pose> FillMeter::poses_at(double time, const ColliderPoses& poses) const {
@@ -163,7 +163,7 @@ std::vector<FillReport> FillMeter::measure(const ParticleFrame& frame, double ti
   return out;
 }
 
-FillSeries::FillSeries(const SceneDescription& scene, const ColliderRegions& regions, const fs::path& folder)
+FillSeries::FillSeries(const model::Scene& scene, const ColliderRegions& regions, const fs::path& folder)
     : meter_(scene, regions), file_(folder / "fill.csv") {}
 
 void FillSeries::begin() {

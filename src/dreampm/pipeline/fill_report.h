@@ -30,7 +30,7 @@ using ColliderRegions = std::vector<std::shared_ptr<const Region>>;
 ColliderRegions regions_of(const std::vector<Collider>& colliders);
 /// Of a scene's colliders, where one of them is a container; else none, and nothing is read. Throws
 /// InputError for one that cannot be made.
-ColliderRegions regions_of(const SceneDescription& scene);
+ColliderRegions regions_of(const model::Scene& scene);
 
 /// The hollow of a collider that is a container, as liquid finds it.
 struct ColliderHollow {
@@ -43,13 +43,13 @@ struct ColliderHollow {
 /// colliders of the scene, in its order. Cells are those of the grid; up is against the scene's
 /// gravity, +Y without one; the other colliders take room. Throws InputError for a hollow of too
 /// many cells.
-std::vector<ColliderHollow> collider_hollows(const SceneDescription& scene, const ColliderRegions& regions);
+std::vector<ColliderHollow> collider_hollows(const model::Scene& scene, const ColliderRegions& regions);
 
 /// What `check` says of them: what each holds, and a warning where nothing can be reached.
 struct HollowLines {
   std::vector<std::string> notes, warnings;
 };
-HollowLines hollow_lines(const SceneDescription& scene, const ColliderRegions& regions);
+HollowLines hollow_lines(const model::Scene& scene, const ColliderRegions& regions);
 
 /// Where colliders stand, by name: those that the scene does not move itself.
 using ColliderPoses = std::map<std::string, Pose>;
@@ -57,7 +57,7 @@ using ColliderPoses = std::map<std::string, Pose>;
 /// Measures frames of a scene.
 class FillMeter {
  public:
-  FillMeter(const SceneDescription& scene, const ColliderRegions& regions);
+  FillMeter(const model::Scene& scene, const ColliderRegions& regions);
   /// No collider is a container: there is nothing to measure.
   bool empty() const { return hollows_.empty(); }
   const std::vector<ColliderHollow>& hollows() const { return hollows_; }
@@ -86,7 +86,7 @@ class FillMeter {
 /// fill.csv in a run's folder: a row a frame.
 class FillSeries {
  public:
-  FillSeries(const SceneDescription& scene, const ColliderRegions& regions, const std::filesystem::path& folder);
+  FillSeries(const model::Scene& scene, const ColliderRegions& regions, const std::filesystem::path& folder);
   /// A new file; that of an earlier run is removed.
   void begin();
   /// Goes on after `time` [s]; a run that has no file yet begins one.

@@ -103,7 +103,7 @@ Inspection inspect_particles(const fs::path& file) {
   if (!found) return out;
   const auto& [run, number] = *found;
   std::map<std::string, double> masses;  // of one particle
-  for (const scene::Material& m : run.scene.materials)
+  for (const model::Material& m : run.scene.materials)
     masses[m.name] = m.values["density"] * std::pow(run.scene.space.spacing, 3);
   double mass = 0;
   Vec3d momentum{};
@@ -151,13 +151,13 @@ Inspection inspect_ply(const fs::path& file) {
 }
 
 Inspection inspect_scene(const fs::path& file) {
-  const SceneDescription scene = scene::load_scene(file, {.variant = {}, .overrides = {}, .assets = asset_names()});
+  const model::Scene scene = scene::load_scene(file, {.variant = {}, .overrides = {}, .assets = asset_names()});
   const InitialState start = assemble(scene, file.string());
   Inspection out;
   out.kind = "scene";
   out.count = scene.bodies.size();
-  out.bounds = Box3d{scene.space.min, scene.space.max};
-  for (const scene::Material& m : scene.materials) out.attributes.push_back(m.name);
+  out.bounds = Box3d{scene.space.min, scene.space.end()};
+  for (const model::Material& m : scene.materials) out.attributes.push_back(m.name);
   double mass = 0;
   Vec3d momentum{};
   for (std::size_t s = 0; s < start.seeds.size(); ++s) {
@@ -190,8 +190,8 @@ Inspection inspect_run(const fs::path& folder) {
   Inspection out;
   out.kind = "run";
   out.count = run.record.frames.size();
-  out.bounds = Box3d{run.scene.space.min, run.scene.space.max};
-  for (const scene::Material& m : run.scene.materials) out.attributes.push_back(m.name);
+  out.bounds = Box3d{run.scene.space.min, run.scene.space.end()};
+  for (const model::Material& m : run.scene.materials) out.attributes.push_back(m.name);
   if (!run.record.frames.empty()) {
     const FrameRecord& last = run.record.frames.back();
     out.state_hash = last.state_hash;

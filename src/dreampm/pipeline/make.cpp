@@ -32,7 +32,7 @@ std::optional<RunRecord> earlier_record(const fs::path& folder) {
   }
 }
 
-bool all_frames_there(const RunRecord& record, const SceneDescription& scene, const fs::path& folder) {
+bool all_frames_there(const RunRecord& record, const model::Scene& scene, const fs::path& folder) {
   if (record.frames.empty() || record.frames.back().frame < scene.time.frames) return false;
   for (int f = record.frames.front().frame; f <= scene.time.frames; ++f)
     if (!fs::exists(folder / "particles" / numbered("particles", f, ".ply"))) return false;
@@ -40,7 +40,7 @@ bool all_frames_there(const RunRecord& record, const SceneDescription& scene, co
 }
 
 /// Simulates what is missing. Returns whether anything was.
-bool simulate_rest(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options,
+bool simulate_rest(const model::Scene& scene, const SceneSource& source, const MakeOptions& options,
                    const std::shared_ptr<RunLock>& lock) {
   const std::optional<RunRecord> record = earlier_record(options.folder);
   bool resume = false;
@@ -71,14 +71,14 @@ bool simulate_rest(const SceneDescription& scene, const SceneSource& source, con
   return true;
 }
 
-bool make_stages(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+bool make_stages(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
   std::string refused;
   for (const std::string& e : refused_later(scene))
     refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source.path, e);
   if (!refused.empty()) throw InputError(refused);
   check_encoder();
   const auto lock = std::make_shared<RunLock>(options.folder);
-  const SceneDescription kept = with_kept_models(scene);
+  const model::Scene kept = with_kept_models(scene);
   const std::string resolved = scene::emit_scene(kept);
   const fs::path scene_file = options.folder / "scene.yaml";
   if (fs::exists(scene_file))
@@ -95,7 +95,7 @@ bool make_stages(const SceneDescription& scene, const SceneSource& source, const
 
 }  // namespace
 
-bool make(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options) {
+bool make(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
   const ThreadLimit threads(options.threads);
   try {
     return make_stages(scene, source, options);

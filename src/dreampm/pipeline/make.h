@@ -15,6 +15,6 @@ struct MakeOptions {
 /// Simulates, meshes, draws and encodes; every stage goes on where it stopped and leaves what is up
 /// to date. Returns false if there was nothing to do. Reports why it makes something again. Throws
 /// as the stages do; after Interrupted the same call goes on.
-bool make(const SceneDescription& scene, const SceneSource& source, const MakeOptions& options);
+bool make(const model::Scene& scene, const SceneSource& source, const MakeOptions& options);
 
 }  // namespace dreampm

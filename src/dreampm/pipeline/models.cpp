@@ -17,7 +17,7 @@ namespace {
 constexpr const char* models = "models";
 
 /// models/HASH/NAME of every model file, by its path.
-std::map<std::string, fs::path> kept_names(SceneDescription scene) {
+std::map<std::string, fs::path> kept_names(model::Scene scene) {
   std::map<std::string, fs::path> names;
   scene::each_model(scene, [&](std::string& path) {
     if (is_asset(path) || names.contains(path)) return;
@@ -64,23 +64,23 @@ void remove_others(const fs::path& folder, const std::set<std::string>& hashes) 
 
 }  // namespace
 
-SceneDescription with_kept_models(const SceneDescription& scene) {
+model::Scene with_kept_models(const model::Scene& scene) {
   const auto names = kept_names(scene);
-  SceneDescription kept = scene;
+  model::Scene kept = scene;
   scene::each_model(kept, [&](std::string& path) {
     if (const auto name = names.find(path); name != names.end()) path = name->second.string();
   });
   return kept;
 }
 
-SceneDescription located_in(SceneDescription kept, const fs::path& folder) {
+model::Scene located_in(model::Scene kept, const fs::path& folder) {
   scene::each_model(kept, [&](std::string& path) {
     if (!is_asset(path)) path = (folder / path).lexically_normal().string();
   });
   return kept;
 }
 
-void write_run_scene(const SceneDescription& scene, const fs::path& folder) {
+void write_run_scene(const model::Scene& scene, const fs::path& folder) {
   std::set<std::string> hashes;
   for (const auto& [path, name] : kept_names(scene)) {
     copy_model(path, folder / name);

@@ -3,19 +3,19 @@
 #pragma once
 #include <filesystem>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
 /// The scene as it stands in a run's folder: models/HASH/NAME in place of every model file, HASH of
 /// its bytes. Assets keep their names. Throws InputError for a file that cannot be read.
-SceneDescription with_kept_models(const SceneDescription& scene);
+model::Scene with_kept_models(const model::Scene& scene);
 
 /// The scene with the names of with_kept_models as paths in the folder.
-SceneDescription located_in(SceneDescription kept, const std::filesystem::path& folder);
+model::Scene located_in(model::Scene kept, const std::filesystem::path& folder);
 
 /// Writes scene.yaml and the copies of its models into the folder, and removes copies that it does
 /// not name. Throws RunError if they cannot be written.
-void write_run_scene(const SceneDescription& scene, const std::filesystem::path& folder);
+void write_run_scene(const model::Scene& scene, const std::filesystem::path& folder);
 
 }  // namespace dreampm

@@ -45,7 +45,7 @@ fs::path existing_folder(const fs::path& folder, const std::string& file) {
 
 /// The bound of explicit steps of matter at rest pressure and the largest expected speed; of a
 /// projection that of the matter in its liquid.
-StepBound explicit_bound(const InitialState& start, const SceneDescription& scene) {
+StepBound explicit_bound(const InitialState& start, const model::Scene& scene) {
   const bool projects = scene.time.solver == SolverKind::projection;
   SignalSpeeds fastest{start.expected.speed, 0, 0, 0, 0};
   for (const auto& set : start.world.sets) {
@@ -59,7 +59,7 @@ StepBound explicit_bound(const InitialState& start, const SceneDescription& scen
 }
 
 /// The same of the steps of the scene's solver.
-StepBound bound_of_expected(const InitialState& start, const SceneDescription& scene) {
+StepBound bound_of_expected(const InitialState& start, const model::Scene& scene) {
   if (scene.time.solver == SolverKind::projection)
     return projection_bound(scene.time.cfl, start.world.dx, length(scene.gravity),
                             {start.expected.speed, start.expected.speed}, block_width);
@@ -68,7 +68,7 @@ StepBound bound_of_expected(const InitialState& start, const SceneDescription& s
 
 }  // namespace
 
-Preflight preflight(const SceneDescription& scene, const std::string& file) {
+Preflight preflight(const model::Scene& scene, const std::string& file) {
   std::string errors;
   fs::path disk;
   InitialState start;
@@ -89,7 +89,7 @@ Preflight preflight(const SceneDescription& scene, const std::string& file) {
   Engine<float> engine(as_world<float>(start.world), make_cpu_backend());
   const World<float>& world = engine.world();
   begin(engine, start, scene);
-  check_fixed_dt(world, start.seeds, scene.time, file);
+  check_fixed_dt(world, start.seeds, scene, file);
   Preflight p;
   p.particles = start.particles();
   p.dx = world.dx;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
@@ -25,6 +25,6 @@ struct Preflight {
 };
 /// `file` names the scene in messages. Throws as `simulate` does for a scene that cannot start, and
 /// for an output folder that cannot be made.
-Preflight preflight(const SceneDescription& scene, const std::string& file);
+Preflight preflight(const model::Scene& scene, const std::string& file);
 
 }  // namespace dreampm

@@ -14,7 +14,7 @@ template <class R>
 class ProbeFiles {
  public:
   /// Throws as ProbeSet does.
-  ProbeFiles(const SceneDescription& scene, const InitialState& start, const std::string& file,
+  ProbeFiles(const model::Scene& scene, const InitialState& start, const std::string& file,
              std::filesystem::path folder)
       : folder_(std::move(folder)), set_(scene, start, file) {}
   /// New files; those of earlier runs are removed.

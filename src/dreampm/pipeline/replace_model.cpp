@@ -32,13 +32,13 @@ Lying lay(const Model& model, const Shape& shape, const MeshShape& form) {
 
 /// The part of its size at which it keeps one spacing away from the walls; 1 if it is inside as it
 /// is.
-double part_inside(const Lying& lying, const scene::Space& space) {
+double part_inside(const Lying& lying, const model::Space& space) {
   double part = 1;
   for (int side = 0; side < 6; ++side) {
     if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
     const int axis = side / 2;
     const double reach = side % 2 ? lying.reach.max[axis] : -lying.reach.min[axis];
-    const double room = side % 2 ? space.max[axis] - lying.center[axis] : lying.center[axis] - space.min[axis];
+    const double room = side % 2 ? space.end()[axis] - lying.center[axis] : lying.center[axis] - space.min[axis];
     if (reach > room) part = std::min(part, (room - space.spacing) / reach);
   }
   return part;
@@ -46,10 +46,10 @@ double part_inside(const Lying& lying, const scene::Space& space) {
 
 }  // namespace
 
-void replace_model(SceneDescription& scene, const std::string& model) {
+void replace_model(model::Scene& scene, const std::string& model) {
   Shape* only = nullptr;
   int meshes = 0;
-  for (scene::Body& b : scene.bodies)
+  for (model::Body& b : scene.bodies)
     if (std::holds_alternative<MeshShape>(b.shape.form)) only = &b.shape, ++meshes;
   if (meshes != 1)
     fail_input("--model: the scene has {} bodies with a mesh; it replaces the mesh of exactly one", meshes);

@@ -8,15 +8,15 @@
 #include <vector>
 
 #include "dreampm/io/run_record.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/pipeline/run_lock.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm {
 
 /// A run's folder, opened: stages read the resolved scene and run.json from it.
 struct RunFolder {
   std::filesystem::path folder;
-  SceneDescription scene;
+  model::Scene scene;
   RunRecord record;
   std::shared_ptr<RunLock> lock{};  ///< while a stage works; null for a folder that is only read
 

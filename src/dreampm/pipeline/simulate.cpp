@@ -64,7 +64,7 @@ std::vector<fs::path> particle_files_in(const fs::path& folder) {
   return files;
 }
 
-std::vector<std::string> columns_of(const SceneDescription& scene) {
+std::vector<std::string> columns_of(const model::Scene& scene) {
   std::vector<std::string> columns = ledger_columns();
   const auto append = [&](const std::vector<std::string>& more) {
     columns.insert(columns.end(), more.begin(), more.end());
@@ -79,7 +79,7 @@ std::vector<std::string> columns_of(const SceneDescription& scene) {
 template <class R>
 class SimulationRun final : Observer<R> {
  public:
-  SimulationRun(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options)
+  SimulationRun(const model::Scene& scene, const SceneSource& source, const SimulateOptions& options)
       : scene_(scene), source_(source), options_(options), folder_(options.folder), threads_(options.threads) {}
 
   SimulateResult go() {
@@ -148,10 +148,10 @@ class SimulationRun final : Observer<R> {
     probes_ = std::make_unique<ProbeFiles<R>>(scene_, assembled_, source_.path, folder_ / "probes");
     make_engine(as_world<R>(assembled_.world), options_.isa);
     record_ = RunRecord::for_this_build();
-    record_.shift = file_shift(scene_.space.min, scene_.space.max, scene_.space.spacing);
+    record_.shift = file_shift(scene_.space.min, scene_.space.end(), scene_.space.spacing);
     describe();
     begin(*engine_, assembled_, scene_);
-    check_fixed_dt(world(), assembled_.seeds, scene_.time, source_.path);
+    check_fixed_dt(world(), assembled_.seeds, scene_, source_.path);
     with_kept_models(scene_);  // reads every file that a model names
     fill_ = std::make_unique<FillSeries>(scene_, regions_of(assembled_.world.colliders), folder_);
     lock_->keep();
@@ -247,7 +247,7 @@ class SimulationRun final : Observer<R> {
       if (std::find(record_.warnings.begin(), record_.warnings.end(), w) == record_.warnings.end())
         record_.warnings.push_back(w);
     record_.probes.clear();
-    for (const scene::Probe& p : scene_.probes)
+    for (const model::Probe& p : scene_.probes)
       record_.probes[p.name] = std::visit([]<class P>(const P&) { return std::string(P::type); }, p.form);
     record_.bodies.clear();
     for (const BodyRange& b : assembled_.bodies) record_.bodies.push_back({b.name, b.first_id, b.count});
@@ -366,7 +366,7 @@ class SimulationRun final : Observer<R> {
     }
   }
 
-  const SceneDescription& scene_;
+  const model::Scene& scene_;
   const SceneSource& source_;
   const SimulateOptions& options_;
   fs::path folder_;
@@ -394,7 +394,7 @@ class SimulationRun final : Observer<R> {
 
 }  // namespace
 
-SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options) {
+SimulateResult simulate(const model::Scene& scene, const SceneSource& source, const SimulateOptions& options) {
   // Asked for once here, so that an unknown one is refused before anything is made.
   return std::visit(
       [&]<class R>(const std::unique_ptr<Backend<R>>&) { return SimulationRun<R>(scene, source, options).go(); },

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/pipeline/run_lock.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm {
 
@@ -41,6 +41,6 @@ struct SimulateResult {
 /// unless it may overwrite, for one with a run that is whole or can go on; a folder that was not
 /// there is not there then. LedgerBreach of a strict run, Interrupted after
 /// saving when asked to stop, RunError on a numerical or disk failure (the last good state stays).
-SimulateResult simulate(const SceneDescription& scene, const SceneSource& source, const SimulateOptions& options);
+SimulateResult simulate(const model::Scene& scene, const SceneSource& source, const SimulateOptions& options);
 
 }  // namespace dreampm

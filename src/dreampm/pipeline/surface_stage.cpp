@@ -28,7 +28,7 @@ std::string settings_hash(const RunFolder& run) {
 std::vector<fs::path> possible_files(const RunFolder& run, int frame) {
   std::vector<fs::path> files;
   std::vector<std::string> stems{"surface"};
-  for (const scene::Material& m : run.scene.materials) stems.push_back(m.name);
+  for (const model::Material& m : run.scene.materials) stems.push_back(m.name);
   for (const std::string& stem : stems)
     for (const char* extension : {".ply", ".obj", ".vdb"})
       files.push_back(run.folder / "surface" / numbered(stem, frame, extension));
@@ -53,11 +53,11 @@ void keep_volumes(RunFolder& run, const std::vector<int>& frames, const std::vec
 }
 
 void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int number) {
-  const SceneDescription& scene = run.scene;
+  const model::Scene& scene = run.scene;
   const MaterialParticles particles = particles_of(scene, material, frame);
   const SurfaceInput input = surface_input(scene, particles, frame.shift);
   const SurfaceResult result = reconstruct(input, surface_settings(scene));
-  if (scene.surface.format == scene::SurfaceFormat::obj)
+  if (scene.surface.format == model::SurfaceFormat::obj)
     write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift);
   if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field, frame.shift);
   write_mesh(surface_file(run, material, number), result.mesh, frame.shift);
@@ -148,8 +148,8 @@ StageResult surface_stage(RunFolder& run) {
     std::vector<fs::path> files;
     for (const int m : materials) {
       files.push_back(surface_file(run, m, f));
-      if (run.scene.surface.format == scene::SurfaceFormat::obj) files.push_back(surface_file(run, m, f, ".obj"));
-      if (run.scene.surface.format == scene::SurfaceFormat::vdb) files.push_back(surface_file(run, m, f, ".vdb"));
+      if (run.scene.surface.format == model::SurfaceFormat::obj) files.push_back(surface_file(run, m, f, ".obj"));
+      if (run.scene.surface.format == model::SurfaceFormat::vdb) files.push_back(surface_file(run, m, f, ".vdb"));
     }
     return files;
   };

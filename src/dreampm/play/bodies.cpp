@@ -8,10 +8,10 @@
 #include "dreampm/error.h"
 #include "dreampm/import/asset.h"
 #include "dreampm/import/import.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/pointer.h"
 #include "dreampm/queries.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/scene/emit.h"
 
 namespace dreampm::play {
@@ -24,12 +24,12 @@ constexpr double touching = 0.5;
 /// Rigid bodies that there may be.
 constexpr std::size_t most_bodies = 64;
 
-/// Something to drop. Rigid ones have a density [kg/m^3] and a look, as in `render.looks`; others
-/// are of the chosen matter. `form`: of a scene file, for a size of 1 m.
+/// Something to drop. Rigid ones have a density [kg/m^3] and a look; others are of the chosen
+/// matter. Lengths are those of a size of 1 m.
 struct Thing {
   std::string_view name;
   double density;
-  std::string_view look;
+  model::Look look;
   Vec3d box;              ///< edges; of no box: 0
   double radius;          ///< of a sphere; of none: 0
   std::string_view mesh;  ///< of a scene file; of none: empty
@@ -37,25 +37,25 @@ struct Thing {
 constexpr Vec3d none{};
 /// Falls where it was fetched; else the one that is made by code.
 constexpr std::string_view fine_dragon = "asset:stanford-dragon", little_dragon = "asset:dragon";
-constexpr std::array things{
-    Thing{"box", 0, "", {1, 1, 1}, 0, ""},
-    Thing{"sphere", 0, "", none, 0.5, ""},
-    Thing{"knot", 0, "", none, 0, "asset:knot"},
-    Thing{"dragon", 0, "", none, 0, fine_dragon},
-    Thing{"crate", 400, "{type: wood}", {1, 1, 1}, 0, ""},
-    Thing{"brick", 1800, "{type: opaque, color: [0.62, 0.25, 0.18], roughness: 0.8}", {1, 0.35, 0.5}, 0, ""},
-    Thing{"ball", 250, "{type: plastic, color: [0.95, 0.62, 0.10]}", none, 0.5, ""},
+const std::array things{
+    Thing{"box", 0, {}, {1, 1, 1}, 0, ""},
+    Thing{"sphere", 0, {}, none, 0.5, ""},
+    Thing{"knot", 0, {}, none, 0, "asset:knot"},
+    Thing{"dragon", 0, {}, none, 0, fine_dragon},
+    Thing{"crate", 400, model::Look::wood(), {1, 1, 1}, 0, ""},
+    Thing{"brick", 1800, model::Look::opaque({0.62, 0.25, 0.18}, 0.8), {1, 0.35, 0.5}, 0, ""},
+    Thing{"ball", 250, model::Look::plastic({0.95, 0.62, 0.10}), none, 0.5, ""},
 };
 /// Degrees about the upright axis that rigid ones are turned by, so that they show two faces.
 constexpr double turned = 25;
 
-std::string shape_of(const Thing& thing, const Vec3d& at, double size) {
-  const std::string center = scene::flow_text(at);
-  if (!thing.mesh.empty())
-    return fmt::format("{{mesh: '{}', fit: {{longest: {}}}, center: {}}}", thing.mesh, size, center);
-  if (thing.radius > 0) return fmt::format("{{sphere: {{radius: {}}}, center: {}}}", thing.radius * size, center);
-  return fmt::format("{{box: {{size: {}}}, center: {}{}}}", scene::flow_text(thing.box * size), center,
-                     thing.density > 0 ? fmt::format(", rotate: {{axis: y, angle: {}}}", turned) : "");
+Shape shape_of(const Thing& thing, const Vec3d& at, double size) {
+  if (!thing.mesh.empty()) return Shape::mesh(std::string(thing.mesh), size, at);
+  if (thing.radius > 0) return Shape::sphere(at, thing.radius * size);
+  const Vec3d half = thing.box * (0.5 * size);
+  Shape box = Shape::box(at - half, at + half);
+  box.form = BoxShape{thing.box * size}, box.center = at;  // to the bit
+  return thing.density > 0 ? box.turned({0, 1, 0}, turned) : box;
 }
 
 }  // namespace
@@ -77,14 +77,14 @@ const std::vector<std::string>& drop_names() {
 
 void Playground::Impl::drop(const std::string& name, const Vec3d& at, double size) {
   const auto known = std::find_if(things.begin(), things.end(), [&](const Thing& t) { return t.name == name; });
-  Thing thing = known == things.end() ? Thing{name, 0, "", none, 0, name} : *known;
+  Thing thing = known == things.end() ? Thing{name, 0, {}, none, 0, name} : *known;
   if (thing.mesh == fine_dragon && !is_fetched(fine_dragon)) {
     thing.mesh = little_dragon;
     say("a little dragon falls; tools/fetch_dragon fetches Stanford's");
   }
   const Vec3d falls{0, -0.5, 0};
-  const SceneShape shape = SceneShape::yaml(shape_of(thing, at, size));
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const Shape shape = shape_of(thing, at, size);
+  const model::Scene& scene = simulation->scene().model();
   if (thing.density > 0) {
     const auto rigid = static_cast<std::size_t>(
         std::count_if(scene.colliders.begin(), scene.colliders.end(), [](const auto& c) { return c.rigid; }));
@@ -93,9 +93,10 @@ void Playground::Impl::drop(const std::string& name, const Vec3d& at, double siz
     std::string own;
     do own = fmt::format("{}-{}", name, ++drops);
     while (std::any_of(scene.colliders.begin(), scene.colliders.end(), [&](const auto& c) { return c.name == own; }));
-    NewRigid body{own, shape};
-    body.density = thing.density, body.velocity = falls, body.look = thing.look;
-    simulation->add_rigid(body);
+    model::Collider body{own, shape};
+    body.friction = 0.4;
+    body.rigid = {.density = thing.density, .velocity = falls};
+    simulation->add(body, thing.look);
     return;
   }
   const double spacing = stage().scene.spacing();
@@ -143,11 +144,11 @@ void Playground::Impl::push_bodies() {
 }
 
 void Playground::Impl::erase(const Vec3d& at, double radius) {
-  simulation->remove(SceneShape::sphere(at, radius));
+  simulation->remove(Shape::sphere(at, radius));
   const std::string body = body_at(at);
   if (body.empty()) return;
   if (grab && grab->body == body) grab.reset();
-  simulation->remove_rigid(body);
+  simulation->remove_collider(body);
 }
 
 }  // namespace dreampm::play

@@ -7,21 +7,20 @@
 
 #include "dreampm/base/hash.h"
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
 std::string Playground::Impl::main_material() const {
   std::string name;
   std::size_t most = 0;
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const model::Scene& scene = simulation->scene().model();
   // Where all matter is still to come, that of the first emitter.
-  if (!scene.emitters.empty())
-    name = scene.materials.at(static_cast<std::size_t>(scene.emitters.front().material)).name;
-  for (const scene::Material& m : scene.materials) {
+  if (!scene.emitters.empty()) name = scene.emitters.front().material;
+  for (const model::Material& m : scene.materials) {
     const std::size_t count = simulation->particle_count(m.name);
     if (name.empty() || count > most) name = m.name, most = count;
   }
@@ -30,21 +29,21 @@ std::string Playground::Impl::main_material() const {
 
 void Playground::Impl::choose_matter() {
   const std::string name = main_material();
-  for (const scene::Material& m : simulation->scene().description().materials) {
+  for (const model::Material& m : simulation->scene().model().materials) {
     if (m.name != name) continue;
-    const auto kind = kind_of(m.name, m.info->name, m.values.has("viscosity") ? m.values["viscosity"] : 0);
+    const auto kind = kind_of(m.name, m.type, m.values.has("viscosity") ? m.values["viscosity"] : 0);
     if (!kind) return;
     settings.matter = static_cast<double>(*kind);
     // The other kind, where the solver can do with it; else the same.
     const std::size_t other = compared_with(*kind);
-    const bool is_there = refusals[other].empty() || other_liquid(simulation->scene().description(), other);
+    const bool is_there = refusals[other].empty() || other_liquid(simulation->scene().model(), other);
     settings.compare_with = is_there ? static_cast<double>(other + 1) : 0;
   }
 }
 
 void Playground::Impl::put_stand_in() {
   if (!stand_in) return;
-  if (const auto liquid = other_liquid(simulation->scene().description(), *stand_in)) {
+  if (const auto liquid = other_liquid(simulation->scene().model(), *stand_in)) {
     simulation->set_parameter(stand_in_for, "density", liquid->density);
     simulation->set_parameter(stand_in_for, "viscosity", liquid->viscosity);
     looks.insert_or_assign(stand_in_for, look_of(liquid->look));
@@ -111,7 +110,7 @@ void Playground::end_comparison() {
 }
 
 void Playground::open(Stage stage) {
-  if (size_ && !stage.report && stage.scene.description().start.empty()) stage = resized(std::move(stage), *size_);
+  if (size_ && !stage.report && stage.scene.model().start.empty()) stage = resized(std::move(stage), *size_);
   Impl::Begun next = impl_->begin(std::move(stage));  // where it throws, nothing has changed
   if (!second_) return impl_->open(std::move(next));
   // The comparison is of the new stage; what was before it is as it was left.

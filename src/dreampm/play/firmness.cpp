@@ -32,9 +32,9 @@ struct Up {
 };
 
 /// m: from that place down to the nearest collider, or to the side of the box.
-double way_down(const std::vector<ColliderShape>& colliders, double cell, const Up& up, const scene::Space& space,
+double way_down(const std::vector<ColliderShape>& colliders, double cell, const Up& up, const model::Space& space,
                 const Vec3d& from) {
-  const double floor = up.sign > 0 ? space.min[up.axis] : -space.max[up.axis];
+  const double floor = up.sign > 0 ? space.min[up.axis] : -space.end()[up.axis];
   const double whole = std::max(0.0, up.height(from) - floor);
   constexpr int most_looks = 64;
   double way = 0;
@@ -50,7 +50,7 @@ double way_down(const std::vector<ColliderShape>& colliders, double cell, const 
 }
 
 Press press_on(const Simulation& simulation, const std::string& material, const std::vector<ColliderShape>& colliders,
-               const Up& up, const scene::Space& space) {
+               const Up& up, const model::Space& space) {
   const int u = (up.axis + 1) % 3, v = (up.axis + 2) % 3;
   const double side = simulation.stepping().cell;
   const auto square = [&](const Vec3d& x) {
@@ -94,15 +94,14 @@ Press press_on(const Simulation& simulation, const std::string& material, const 
 
 }  // namespace
 
-bool is_elastic(const scene::Material& m) {
-  return m.info->name == "elastic" || m.info->name == "neo_hookean" ||
-         (m.info->name == "seed" && m.values["elastic"] != 0);
+bool is_elastic(const model::Material& m) {
+  return m.type == "elastic" || m.type == "neo_hookean" || (m.type == "seed" && m.values["elastic"] != 0);
 }
 
 bool is_of_firmness(std::string_view key) { return std::find(std::begin(keys), std::end(keys), key) != std::end(keys); }
 
 std::vector<std::optional<Press>> presses_on(const Simulation& simulation) {
-  const scene::SceneDescription& scene = simulation.scene().description();
+  const model::Scene& scene = simulation.scene().model();
   std::vector<std::optional<Press>> presses(scene.materials.size());
   const auto is_asked = [&](std::size_t m) {
     return is_elastic(scene.materials[m]) && simulation.particle_count(scene.materials[m].name) > 0;

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/simulation.h"
 
 namespace dreampm::play {
@@ -25,7 +25,7 @@ struct Press {
 };
 
 /// Whether sliders must keep it firm: it is elastic, with no flow by which it gives way.
-bool is_elastic(const scene::Material& material);
+bool is_elastic(const model::Material& material);
 /// Whether such matter is less firm with another value of that parameter.
 bool is_of_firmness(std::string_view key);
 

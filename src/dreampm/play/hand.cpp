@@ -8,9 +8,9 @@
 #include "dreampm/error.h"
 #include "dreampm/geometry/region.h"
 #include "dreampm/math/mat3.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/solver/emission_pattern.h"
 
 namespace dreampm::play {
@@ -36,7 +36,7 @@ Turn turn_to(const Vec3d& direction) {
 void Playground::Impl::apply_hand(double seconds) {
   const Vec3d wanted = Vec3d{settings.gravity_x, settings.gravity_y, settings.gravity_z} + shake;
   if (!(wanted == gravity)) simulation->set_gravity(gravity = wanted);
-  if (const scene::Time& time = simulation->scene().description().time;
+  if (const model::Time& time = simulation->scene().model().time;
       time.solver == SolverKind::projection && time.cfl != settings.cfl)
     simulation->set_cfl(settings.cfl);
   shake = length(shake) < 0.05 ? Vec3d{} : shake * std::pow(shake_left, seconds);
@@ -73,9 +73,9 @@ void Playground::Impl::pour_jet() {
   const double before = jet.travelled;
   jet.travelled += speed * seconds;
   std::vector<Vec3d> places;
-  const scene::Space& space = simulation->scene().description().space;
+  const model::Space& space = simulation->scene().model().space;
   const Vec3d margin{0.5 * spacing, 0.5 * spacing, 0.5 * spacing};
-  const Box3d room{space.min + margin, space.max - margin};
+  const Box3d room{space.min + margin, space.end() - margin};
   EmissionPattern(*region, along, spacing).for_entering(before, jet.travelled, false, [&](const Vec3d& at) {
     if (room.contains(at)) places.push_back(at);
   });

@@ -15,9 +15,9 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/error.h"
 #include "dreampm/gl/headless.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/app.h"
 #include "dreampm/play/random_hands.h"
-#include "dreampm/scene/description.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm::play {
@@ -61,7 +61,7 @@ constexpr int stay = 150, pause = 2;
 void do_anything(RandomHands& hands, Playground& playground, int frame) {
   const std::shared_ptr<const Frame> now = playground.frame();
   const Box3d& box = now->domain;
-  const scene::Space& space = playground.simulation().scene().description().space;
+  const model::Space& space = playground.simulation().scene().model().space;
   // Walls hold matter to within its precision; through open sides it goes a whole box before it is
   // taken out, by blocks.
   const auto slack = [&](int side) {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <utility>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/physics/dt.h"
 #include "dreampm/play/firmness.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -29,14 +29,14 @@ double reach(const Stepping& s, const MaterialState& m) {
 }
 
 /// As if those were the values of all parameters of a material.
-MaterialState state_with(const Simulation& simulation, const scene::Material& material) {
+MaterialState state_with(const Simulation& simulation, const model::Material& material) {
   std::vector<ParameterValue> values;
   for (const auto& [key, value] : material.values) values.push_back({key, value});
   return simulation.material(material.name, values);
 }
 
 /// The parameter that a control sets; empty where it is none of that material.
-std::string key_of(const ControlInfo& c, const scene::Material& m) {
+std::string key_of(const ControlInfo& c, const model::Material& m) {
   const std::string start = "material." + m.name + ".";
   if (!c.id.starts_with(start)) return "";
   std::string key = c.id.substr(start.size());
@@ -47,14 +47,12 @@ std::string key_of(const ControlInfo& c, const scene::Material& m) {
 class Firmness {
  public:
   Firmness(const Simulation& simulation, const std::vector<ControlInfo>& controls, const std::vector<double>& values)
-      : simulation_(simulation),
-        presses_(presses_on(simulation)),
-        materials_(simulation.scene().description().materials) {
-    for (const scene::Material& m : materials_) was_.push_back(m.values["density"]);
+      : simulation_(simulation), presses_(presses_on(simulation)), materials_(simulation.scene().model().materials) {
+    for (const model::Material& m : materials_) was_.push_back(m.values["density"]);
     for (std::size_t i = 0; i < controls.size(); ++i) {
       for (int a = 0; a < 3; ++a)
         if (controls[i].id == gravity_ids[std::size_t(a)]) gravity_[a] = values[i];
-      for (scene::Material& m : materials_)
+      for (model::Material& m : materials_)
         if (const std::string key = key_of(controls[i], m); !key.empty()) m.values.set(key, values[i]);
     }
     for (std::size_t m = 0; m < materials_.size(); ++m) now_.push_back(of(m, materials_[m], gravity_));
@@ -66,7 +64,7 @@ class Firmness {
   /// Whether it is firm, or no less so than now, with another value of a parameter.
   bool holds(std::size_t m, const std::string& key, double value) const {
     if (!presses_[m] || !is_of_firmness(key)) return true;
-    scene::Material with = materials_[m];
+    model::Material with = materials_[m];
     with.values.set(key, value);
     return is_enough(m, of(m, with, gravity_));
   }
@@ -83,7 +81,7 @@ class Firmness {
   bool is_enough(std::size_t m, double firmness) const {
     return firmness >= std::min(least_firmness, now_[m]) * (1 - 1e-9);
   }
-  double of(std::size_t m, const scene::Material& material, const Vec3d& gravity) const {
+  double of(std::size_t m, const model::Material& material, const Vec3d& gravity) const {
     if (!presses_[m]) return std::numeric_limits<double>::max();
     const double density = material.values["density"], c = state_with(simulation_, material).sound_speed;
     const double load = presses_[m]->load(length(gravity), density, was_[m]);
@@ -92,7 +90,7 @@ class Firmness {
 
   const Simulation& simulation_;
   std::vector<std::optional<Press>> presses_;
-  std::vector<scene::Material> materials_;  ///< as all is set
+  std::vector<model::Material> materials_;  ///< as all is set
   Vec3d gravity_{};
   std::vector<double> was_;  ///< kg/m^3: density, as the particles have it
   std::vector<double> now_;
@@ -104,14 +102,14 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
                                    const std::vector<double>& values, double step_seconds, double asked) {
   std::vector<LiveRange> all;
   for (const ControlInfo& c : controls) all.push_back({c.min, c.max});
-  const std::vector<scene::Material>& materials = simulation.scene().description().materials;
+  const std::vector<model::Material>& materials = simulation.scene().model().materials;
   const Stepping steps = simulation.stepping();
   const bool is_fixed = steps.fixed_dt > 0;
   // What makes explicit steps short hardly bounds those of a projection.
   const bool is_large = steps.solver == "projection";
   std::vector<double> reaches;
   std::vector<bool> is_there;
-  for (const scene::Material& m : materials) {
+  for (const model::Material& m : materials) {
     reaches.push_back(reach(steps, simulation.material(m.name)));
     is_there.push_back(simulation.particle_count(m.name) > 0);
   }
@@ -148,7 +146,7 @@ std::vector<LiveRange> live_ranges(const Simulation& simulation, const std::vect
         if (other != m && is_there[other]) needed = std::min(needed, reaches[other]);
       const auto is_live = [&](double value) {
         if (is_fixed || is_large) return true;
-        scene::Material with = materials[m];
+        model::Material with = materials[m];
         with.values.set(key, value);
         return reach(steps, state_with(simulation, with)) >= needed * (1 - 1e-9);
       };

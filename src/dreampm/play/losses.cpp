@@ -5,9 +5,9 @@
 #include <array>
 #include <string>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/action.h"
 #include "dreampm/play/playground_impl.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -31,7 +31,7 @@ std::string lost_text(const std::array<std::uint64_t, 6>& by_side) {
 }
 
 void Playground::Impl::see_losses() {
-  const scene::Space& space = simulation->scene().description().space;
+  const model::Space& space = simulation->scene().model().space;
   if (std::none_of(space.walls.begin(), space.walls.end(), [](const auto& w) { return w.type == WallType::open; }))
     return;
   std::array<std::uint64_t, 6> out{};
@@ -39,7 +39,7 @@ void Playground::Impl::see_losses() {
     simulation->visit(material, {}, [&](const ParticleBatch& some) {
       for (const Vec3d& x : some.position)
         for (int a = 0; a < 3; ++a)
-          out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.max[a];
+          out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.end()[a];
     });
   const std::uint64_t gone = simulation->counts().left;
   const std::uint64_t more = gone - std::min(gone, losses.seen);

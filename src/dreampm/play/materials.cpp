@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/play/firmness.h"
 #include "dreampm/play/live_range.h"
@@ -14,7 +15,6 @@
 #include "dreampm/play/report_config.h"
 #include "dreampm/play/report_looks.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -61,7 +61,7 @@ constexpr Range ranges[] = {
     {"sand", "cohesion", 0, 20000},
 };
 
-ControlInfo control_of(const scene::Material& m, const Param& p, double value, const Stage& stage) {
+ControlInfo control_of(const model::Material& m, const Param& p, double value, const Stage& stage) {
   ControlInfo c;
   c.id = fmt::format("{}{}.{}", prefix, m.name, p.key);
   c.panel = m.name;
@@ -70,12 +70,12 @@ ControlInfo control_of(const scene::Material& m, const Param& p, double value, c
   for (const auto& [key, name] : names)
     if (key == p.key) c.label = name;
   // The report's are all of its own page.
-  c.advanced = m.info->name != "seed" && std::find(std::begin(plain), std::end(plain), p.key) == std::end(plain);
+  c.advanced = m.type != "seed" && std::find(std::begin(plain), std::end(plain), p.key) == std::end(plain);
   c.unit = p.unit == "1" ? "" : std::string(p.unit);
   c.help = std::string(p.help);
   c.min = p.min, c.max = p.max, c.fallback = value;
   for (const Range& r : ranges) {
-    if (r.material != m.info->name || r.key != p.key) continue;
+    if (r.material != m.type || r.key != p.key) continue;
     if (!r.label.empty()) c.label = r.label;
     const bool is_off = r.needs.starts_with('!');
     if (!r.needs.empty()) c.needs = fmt::format("{}{}.{}", prefix, m.name, r.needs.substr(is_off ? 1 : 0));
@@ -93,8 +93,8 @@ ControlInfo control_of(const scene::Material& m, const Param& p, double value, c
     c.max = std::min(p.max, value * std::pow(10, slider_decades));
   }
   for (const Range& r : ranges)
-    if (r.material == m.info->name && r.key == p.key) c.min = r.min, c.max = r.max;
-  if (m.info->name == "seed" && p.key == "h" && stage.report) c.max = stage.max_hard;
+    if (r.material == m.type && r.key == p.key) c.min = r.min, c.max = r.max;
+  if (m.type == "seed" && p.key == "h" && stage.report) c.max = stage.max_hard;
   if (c.decades && !(c.min > 0)) c.decades = false;
   return c;
 }
@@ -122,10 +122,10 @@ Named named_by(const std::string& id) {
 
 }  // namespace
 
-MatterLook look_of(const scene::Look& look) {
+MatterLook look_of(const model::Look& look) {
   MatterLook own;
-  own.clear = look.type == scene::LookType::dielectric;
-  own.grains = look.type == scene::LookType::spheres;
+  own.clear = look.type == model::LookType::dielectric;
+  own.grains = look.type == model::LookType::spheres;
   own.color = static_cast<Vec3f>(look.color);
   own.absorption = static_cast<Vec3f>(look.absorption);
   own.refractive_index = static_cast<float>(look.ior);
@@ -156,20 +156,20 @@ void Playground::Impl::list_controls() {
   auto all = std::make_shared<std::vector<ControlInfo>>();
   for (const SettingControl& c : setting_controls()) {
     if (c.info.panel == "Report" && !stage().report) continue;
-    if (c.member == &Settings::cfl && !is_projection(stage().scene.description())) continue;
+    if (c.member == &Settings::cfl && !is_projection(stage().scene.model())) continue;
     all->push_back(c.info);
-    if (c.member == &Settings::cfl) all->back().fallback = stage().scene.description().time.cfl;
+    if (c.member == &Settings::cfl) all->back().fallback = stage().scene.model().time.cfl;
     if (c.info.id == "time_step") all->back().max = stage().max_time_step;
     // Back to the gravity of the scene.
-    const Vec3d& own = stage().scene.description().gravity;
+    const Vec3d& own = stage().scene.model().gravity;
     if (c.member == &Settings::gravity_x) all->back().fallback = own.x;
     if (c.member == &Settings::gravity_y) all->back().fallback = own.y;
     if (c.member == &Settings::gravity_z) all->back().fallback = own.z;
   }
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const model::Scene& scene = simulation->scene().model();
   // Colors stay as they are set.
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    const scene::Material& m = scene.materials[i];
+    const model::Material& m = scene.materials[i];
     MatterLook own = look_of(scene.render.looks.at(m.name));
     if (const auto given = stage().opacity.find(m.name); given != stage().opacity.end())
       own.opacity = static_cast<float>(given->second);
@@ -177,12 +177,12 @@ void Playground::Impl::list_controls() {
     if (stage().report && std::exchange(own.grains, false))
       own.ball = static_cast<float>(scene.render.looks.at(m.name).radius);
     looks.try_emplace(m.name, own);
-    for (const Param& p : m.info->params)
+    for (const Param& p : info_of(m).params)
       // What the solver derives follows from the rest.
       if (m.values.has(p.key) && has_effect(scene, m, p.key)) {
         // What a control is reset to is how the scene has it.
         double fallback = m.values[p.key];
-        for (const scene::Material& given : stage().scene.description().materials)
+        for (const model::Material& given : stage().scene.model().materials)
           if (given.name == m.name) fallback = given.values[p.key];
         ControlInfo c = control_of(m, p, fallback, stage());
         if (c.choices.empty())
@@ -216,7 +216,7 @@ double Playground::Impl::value_of(const ControlInfo& control) {
     if (c.info.id == control.id) return settings.*c.member;
   if (const float* member = look_member(control.id)) return static_cast<double>(*member);
   const Named n = named_by(control.id);
-  for (const scene::Material& m : simulation->scene().description().materials)
+  for (const model::Material& m : simulation->scene().model().materials)
     if (m.name == n.material) return m.values[n.key];
   return control.fallback;
 }
@@ -319,20 +319,21 @@ void Playground::Impl::approach_targets() {
 }
 
 std::string Playground::Impl::ensure_matter(std::size_t kind) {
-  if (stand_in && matters()[kind].name == stand_in_for && !other_liquid(simulation->scene().description(), *stand_in))
+  if (stand_in && matters()[kind].name == stand_in_for && !other_liquid(simulation->scene().model(), *stand_in))
     kind = *stand_in;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
   if (!refusals[kind].empty())
     throw InputError(fmt::format("{}: {}; the other solver can (key {})", matter.title, refusals[kind], solver_key));
-  simulation->add_material(std::string(matter.name), std::string(matter.scene), std::string(matter.look));
+  const model::Scene& kinds = scene_of_kinds();
+  simulation->add_material(kinds.materials.at(kind), kinds.render.looks.at(std::string(matter.name)));
   list_controls();
   return std::string(matter.name);
 }
 
 std::string Playground::Impl::remedy() const {
-  if (is_projection(simulation->scene().description()))
+  if (is_projection(simulation->scene().model()))
     return meters.limiter == "speed"  ? "more cells in a step, slower matter, or a larger spacing"
            : meters.limiter == "wave" ? "a larger spacing, or less gravity"
                                       : "";
@@ -359,11 +360,11 @@ std::string Playground::Impl::remedy() const {
 
 std::vector<std::string> Playground::Impl::facts() const {
   std::vector<std::string> lines;
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const model::Scene& scene = simulation->scene().model();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const MaterialState f = simulation->material(scene.materials[m].name);
-    if (is_projection(scene) && scene.materials[m].info->liquid) {
-      const scene::Material& liquid = scene.materials[m];
+    if (is_projection(scene) && info_of(scene.materials[m]).liquid) {
+      const model::Material& liquid = scene.materials[m];
       lines.push_back(fmt::format("{}: {:.4g} kg/m^3, incompressible", liquid.name, liquid.values["density"]));
       if (f.kinematic_viscosity > 0) lines.back() += fmt::format(", viscosity {:.3g} m^2/s", f.kinematic_viscosity);
       continue;

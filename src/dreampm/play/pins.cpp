@@ -2,20 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <variant>
 
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/playground_impl.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
 
 constexpr std::string_view prefix = "pin-";
 
-const Brush* pin_of(const dreampm::ForceField& field) {
-  return field.name.starts_with(prefix) ? std::get_if<Brush>(&field.field) : nullptr;
-}
+bool is_pin(const model::ForceField& field) { return field.name.starts_with(prefix) && field.type == "brush"; }
 
 }  // namespace
 
@@ -28,12 +25,13 @@ Pins pins_of(const Simulation& simulation) {
 
 Pins take_pins(Scene& scene) {
   Pins all;
-  for (const scene::ForceField& field : scene.description().fields)
-    if (const Brush* brush = pin_of(field))
-      all.emplace_back(field.name, Stroke{brush->point, brush->radius, brush->velocity, brush->rate});
+  for (const model::ForceField& field : scene.model().fields)
+    if (is_pin(field))
+      all.emplace_back(field.name, Stroke{field.vectors.at("point"), field.numbers["radius"],
+                                          field.vectors.at("velocity"), field.numbers["rate"]});
   if (all.empty()) return all;
-  scene::SceneDescription bare = scene.description();
-  std::erase_if(bare.fields, [](const ForceField& field) { return pin_of(field) != nullptr; });
+  model::Scene bare = scene.model();
+  std::erase_if(bare.fields, is_pin);
   scene = Scene(std::move(bare), scene.file());
   return all;
 }

@@ -10,9 +10,9 @@
 
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -55,7 +55,7 @@ void Playground::Impl::open(Begun next) {
   enter(std::move(what), std::move(next.simulation));
   settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
   settings.time_step = std::min(settings.time_step, stage().max_time_step);
-  settings.cfl = is_projection(stage().scene.description()) ? stage().scene.description().time.cfl : Settings{}.cfl;
+  settings.cfl = is_projection(stage().scene.model()) ? stage().scene.model().time.cfl : Settings{}.cfl;
   choose_matter();
 }
 
@@ -65,7 +65,7 @@ void Playground::Impl::enter(std::shared_ptr<const Opened> what, Simulation fres
   owed = 0;
   targets.clear(), grab.reset(), push.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
   restart_is_due = single_step = false, drops = failures = 0, shake = {};
-  gravity = stage().scene.description().gravity;
+  gravity = stage().scene.model().gravity;
   no_other = why_not_other(stage());
   list_controls();
   ages.forget(), seen_until.reset(), see_new_matter();
@@ -96,7 +96,7 @@ void Playground::Impl::let_go() {
   ages.back_to(simulation->time()), seen_until.reset();
   grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
   stop_walls();
-  gravity = simulation->scene().description().gravity;
+  gravity = simulation->scene().model().gravity;
   forget_losses();
 }
 

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/model/space.h"
 #include "dreampm/play/action.h"
 #include "dreampm/play/control.h"
 #include "dreampm/play/frame.h"
 #include "dreampm/play/history.h"
 #include "dreampm/simulation.h"
-#include "dreampm/state/solver_kind.h"
 
 namespace dreampm::play {
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/play/ages.h"
 #include "dreampm/play/playground.h"
 #include "dreampm/play/rendering.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -107,7 +107,7 @@ struct Films {
 struct ReportLook;
 
 /// How matter looks whose scene says so.
-MatterLook look_of(const scene::Look& look);
+MatterLook look_of(const model::Look& look);
 
 struct Playground::Impl {
   Impl(Stage stage, const PlayOptions& options);

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "dreampm/gl/pick.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/wall_face.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -183,7 +183,7 @@ void Pointer::draw_wall() {
   // Within what the verb takes.
   const double at = side % 2 ? std::clamp(*to, std::min(room_.min[axis] + least, domain_.max[axis]), domain_.max[axis])
                              : std::clamp(*to, domain_.min[axis], std::max(room_.max[axis] - least, domain_.min[axis]));
-  post("wall", {at}, scene::wall_names.at(side));
+  post("wall", {at}, std::string(side_names.at(side)));
 }
 
 void Pointer::move(const Frame& frame, double x, double y, double time) {

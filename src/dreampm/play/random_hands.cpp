@@ -6,10 +6,10 @@
 #include <cmath>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/panels.h"
 #include "dreampm/play/stories.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 
@@ -84,7 +84,8 @@ Action RandomHands::next(const Frame& frame) {
       const std::size_t side = index(6);
       const int axis = static_cast<int>(side) / 2;
       const double in = random(0, 0.6) * size[axis];
-      return {"wall", {scene::wall_names.at(side), text_of(side % 2 ? low[axis] + size[axis] - in : low[axis] + in)}};
+      return {"wall",
+              {std::string(side_names.at(side)), text_of(side % 2 ? low[axis] + size[axis] - in : low[axis] + in)}};
     }
     case 18:
       if (!frame.other)

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "dreampm/math/rng.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/cell_means.h"
 #include "dreampm/play/live_range.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -97,8 +97,8 @@ void read_values(const Simulation& simulation, const Coloring& coloring, const A
 }
 
 /// As the scene's pictures have it, about; the report's own for its scenes.
-void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame) {
-  const scene::Camera& camera = scene.render.camera;
+void set_camera(const model::Scene& scene, bool report, Frame& frame) {
+  const model::Camera& camera = scene.render.camera;
   constexpr double degree = std::numbers::pi / 180;
   if (report) {
     frame.eye = {0.5, 1.0, 1.95}, frame.target = {0.5, 0.3, 0.5}, frame.view_angle = 55 * degree;
@@ -107,7 +107,7 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
   frame.eye = camera.from, frame.target = camera.to, frame.view_angle = camera.fov * degree;
   if (!camera.fit_basin) return;
   const double around = camera.azimuth * degree, up = std::max(camera.elevation, 20.0) * degree;
-  const Box3d box{scene.space.min, scene.space.max};
+  const Box3d box{scene.space.min, scene.space.end()};
   const double distance = 0.42 * length(box.size()) / std::sin(0.5 * frame.view_angle);
   frame.target = box.center();
   frame.eye =
@@ -115,15 +115,15 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
 }
 
 /// Walls that were dragged are drawn as planes.
-bool is_drawn(const scene::Collider& c) {
+bool is_drawn(const model::Collider& c) {
   for (std::size_t side = 0; side < 6; ++side)
     if (c.name == wall_name(side)) return false;
   return !c.pin && !c.sequence;
 }
 
-BodyFrame body_of(const Simulation& simulation, const scene::Collider& c) {
-  const scene::Look& look = simulation.scene().description().render.looks.at(c.name);
-  const bool clear = look.type == scene::LookType::dielectric;
+BodyFrame body_of(const Simulation& simulation, const model::Collider& c) {
+  const model::Look& look = simulation.scene().model().render.looks.at(c.name);
+  const bool clear = look.type == model::LookType::dielectric;
   return {c.name,
           c.rigid.has_value(),
           std::make_shared<const TriMesh>(simulation.collider_mesh(c.name)),
@@ -135,7 +135,7 @@ BodyFrame body_of(const Simulation& simulation, const scene::Collider& c) {
 /// Makes `bodies` those of the scene; those of a name that was there already stay as they were.
 void list_bodies(const Simulation& simulation, std::vector<BodyFrame>& bodies) {
   const std::vector<BodyFrame> before = std::exchange(bodies, {});
-  for (const scene::Collider& c : simulation.scene().description().colliders) {
+  for (const model::Collider& c : simulation.scene().model().colliders) {
     if (!is_drawn(c)) continue;
     const auto known = std::find_if(before.begin(), before.end(), [&](const BodyFrame& b) { return b.name == c.name; });
     bodies.push_back(known == before.end() ? body_of(simulation, c) : *known);
@@ -155,15 +155,15 @@ void Playground::Impl::see_new_matter() {
 }
 
 void Playground::Impl::read(Frame& frame) {
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const model::Scene& scene = simulation->scene().model();
   frame.number = ticks, frame.actions = actions;
   frame.story = stage().name, frame.about = scene.about;
   frame.preset_file = stage().file, frame.presets = stage().presets, frame.preset = stage().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
-  frame.size = stage().size, frame.can_resize = !stage().report && stage().scene.description().start.empty();
+  frame.size = stage().size, frame.can_resize = !stage().report && stage().scene.model().start.empty();
   frame.solver = static_cast<std::size_t>(scene.time.solver);
   frame.no_other = no_other, frame.matter_refusals = refusals;
-  frame.domain = {scene.space.min, scene.space.max}, frame.spacing = scene.space.spacing;
+  frame.domain = {scene.space.min, scene.space.end()}, frame.spacing = scene.space.spacing;
   frame.matter.resize(scene.materials.size());
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     frame.matter[m].name = scene.materials[m].name,

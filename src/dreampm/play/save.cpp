@@ -7,8 +7,8 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/playground_impl.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -22,7 +22,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
   if (!file.parent_path().empty()) make_folder(file.parent_path());
   check_replaceable(file);
-  scene::SceneDescription now = simulation->scene().description();
+  model::Scene now = simulation->scene().model();
   now.name = file.stem().string();
   now.output.folder = "out/" + now.name;
   now.gravity = {settings.gravity_x, settings.gravity_y, settings.gravity_z};
@@ -31,25 +31,29 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   const int more = as.seconds ? static_cast<int>(std::lround(*as.seconds * now.time.fps)) : now.time.frames - 1;
   now.time.frames = simulation->frame() + std::max(more, 1);
   if (as.seen) {
-    scene::Camera& camera = now.render.camera;
+    model::Camera& camera = now.render.camera;
     camera.fit_basin = false, camera.from = as.seen->from, camera.to = as.seen->to, camera.fov = as.seen->fov;
   }
   if (as.finer) {
     // The walls stay where they were rounded to.
-    now.space.asked_max = now.space.max;
+    now.space.max = now.space.end();
     now.space.spacing /= 2;
-    for (scene::Emitter& emitter : now.emitters) emitter.pool *= 8;
+    for (model::Emitter& emitter : now.emitters) emitter.pool *= 8;
   }
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
   for (const auto& [name, hold] : pins_of(*simulation))  // they hold on
-    now.fields.push_back({{name, Brush{hold.point, hold.radius, hold.velocity, hold.rate}, std::nullopt}, {}});
+    now.fields.push_back({name,
+                          "brush",
+                          {{"radius", hold.radius}, {"rate", hold.rate}},
+                          {{"point", hold.point}, {"velocity", hold.velocity}},
+                          {}});
+  // Beside the scene, which is looked in first.
+  now.start = moment.filename().string();
   if (as.finer)
     simulation->save_moment(moment, Scene(now, moment.string()));
   else
     simulation->save_moment(moment);
-  // Beside the scene, which is looked in first.
-  now.start = moment.filename().string();
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());
   if (!as.finer) say(fmt::format("saved {}: dreampm make runs it", std::filesystem::absolute(file).string()));
 }

@@ -5,11 +5,11 @@
 #include <utility>
 
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/action.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/size_chooser.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -25,7 +25,7 @@ constexpr double too_slow = 0.75;
 
 std::string number_text(const Playground::Impl& side) {
   // Where taps give matter the number at the start says nothing.
-  return side.stage().scene.description().emitters.empty()
+  return side.stage().scene.model().emitters.empty()
              ? fmt::format("{} particles", grouped(side.simulation->particle_count()))
              : fmt::format("particles {:.3g} mm apart", 1e3 * side.stage().scene.spacing());
 }
@@ -38,7 +38,7 @@ const std::vector<std::string>& size_names() {
 }
 
 Stage resized(Stage stage, std::size_t size) {
-  const scene::SceneDescription& scene = stage.scene.description();
+  const model::Scene& scene = stage.scene.model();
   if (size == stage.size) return stage;
   if (stage.report) throw InputError("size: the report has a grid of its own");
   if (!scene.start.empty())
@@ -62,7 +62,7 @@ void Playground::resize(std::size_t size) {
 }
 
 void Playground::choose_solver(SolverKind solver) {
-  if (impl_->stage().scene.description().time.solver == solver) return;
+  if (impl_->stage().scene.model().time.solver == solver) return;
   open(by_solver(impl_->stage(), solver));
   impl_->say(fmt::format("{}: {}",
                          solver == SolverKind::projection

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dreampm/error.h"
+#include "dreampm/physics/param.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/matter.h"
 
@@ -30,22 +31,23 @@ std::string without_place(std::string line) {
 }
 
 /// What the scene is refused for, first of list; empty: nothing.
-std::string refusal(scene::SceneDescription scene) {
-  const std::vector<std::string> lines = refused_parts(Scene(std::move(scene), ""));
+std::string refusal(const model::Scene& scene) {
+  const std::vector<std::string> lines = refused_parts(scene);
   return lines.empty() ? "" : without_place(lines.front());
 }
 
 /// A scene of the same space and steps that holds these materials alone.
-scene::SceneDescription with_materials(const scene::SceneDescription& scene, std::vector<scene::Material> materials) {
-  scene::SceneDescription small;
+model::Scene with_materials(const model::Scene& scene, std::vector<model::Material> materials) {
+  model::Scene small;
   small.space = scene.space, small.time = scene.time;
   small.gravity = scene.gravity, small.gravity_keys = scene.gravity_keys;
   small.materials = std::move(materials);
   return small;
 }
 
-/// One of each kind, in the order of matters().
-const scene::SceneDescription& scene_of_kinds() {
+}  // namespace
+
+const model::Scene& scene_of_kinds() {
   static const Scene one_of_each = [] {
     std::string text = "dreampm: 1\nname: kinds\nspace: {max: [1, 1, 1], spacing: 0.1}\nmaterials:\n";
     for (const Matter& m : matters()) text += fmt::format("  {}: {}\n", m.name, m.scene);
@@ -55,13 +57,15 @@ const scene::SceneDescription& scene_of_kinds() {
     for (const Matter& m : matters()) text += fmt::format("    {}: {}\n", m.name, m.look);
     return parse_scene(text, "kinds.yaml");
   }();
-  return one_of_each.description();
+  return one_of_each.model();
 }
+
+namespace {
 
 std::vector<std::string> settings_of(SolverKind solver) {
   const bool projects = solver == SolverKind::projection;
   return {fmt::format("time.solver={}", solver_names().at(static_cast<std::size_t>(solver))),
-          fmt::format("time.cfl={}", projects ? usual_projection_cfl : scene::Time{}.cfl)};
+          fmt::format("time.cfl={}", projects ? usual_projection_cfl : model::Time{}.cfl)};
 }
 
 }  // namespace
@@ -70,20 +74,20 @@ const std::vector<std::string>& solver_names() {
   static const std::vector<std::string> names{"explicit", "projection"};
   return names;
 }
-bool is_projection(const scene::SceneDescription& scene) { return scene.time.solver == SolverKind::projection; }
+bool is_projection(const model::Scene& scene) { return scene.time.solver == SolverKind::projection; }
 
 std::string why_not_other(const Stage& stage) {
   if (stage.report) return "the report has steps of its own";
-  const scene::SceneDescription& scene = stage.scene.description();
+  const model::Scene& scene = stage.scene.model();
   if (!scene.start.empty()) return fmt::format("{} starts from a moment of one solver", stage.name);
   if (stage.other || is_projection(scene)) return "";
-  scene::SceneDescription with = scene;
+  model::Scene with = scene;
   with.time.solver = SolverKind::projection, with.time.cfl = usual_projection_cfl;
-  return refusal(std::move(with));
+  return refusal(with);
 }
 
 Stage by_solver(Stage stage, SolverKind solver) {
-  if (stage.scene.description().time.solver == solver) return stage;
+  if (stage.scene.model().time.solver == solver) return stage;
   if (const std::string why = why_not_other(stage); !why.empty()) throw InputError("solver: " + why);
   if (!stage.other) {
     stage.scene = stage.scene.with(settings_of(solver));
@@ -98,11 +102,11 @@ Stage by_solver(Stage stage, SolverKind solver) {
   return resized(std::move(stage), size);
 }
 
-std::vector<std::string> matter_refusals(const scene::SceneDescription& scene) {
+std::vector<std::string> matter_refusals(const model::Scene& scene) {
   std::vector<std::string> list(matters().size());
   if (!is_projection(scene) || scene.materials.empty()) return list;
   for (std::size_t kind = 0; kind < list.size(); ++kind) {
-    const scene::Material& m = scene_of_kinds().materials.at(kind);
+    const model::Material& m = scene_of_kinds().materials.at(kind);
     if (std::any_of(scene.materials.begin(), scene.materials.end(),
                     [&](const auto& own) { return own.name == m.name; }))
       continue;
@@ -111,19 +115,18 @@ std::vector<std::string> matter_refusals(const scene::SceneDescription& scene) {
   return list;
 }
 
-std::optional<Liquid> other_liquid(const scene::SceneDescription& scene, std::size_t kind) {
-  const scene::SceneDescription& all = scene_of_kinds();
-  const scene::Material& m = all.materials.at(kind);
-  if (!is_projection(scene) || scene.materials.size() != 1 || m.info->name != "newtonian") return std::nullopt;
+std::optional<Liquid> other_liquid(const model::Scene& scene, std::size_t kind) {
+  const model::Scene& all = scene_of_kinds();
+  const model::Material& m = all.materials.at(kind);
+  if (!is_projection(scene) || scene.materials.size() != 1 || m.type != "newtonian") return std::nullopt;
   return Liquid{m.values["density"], m.values["viscosity"], all.render.looks.at(m.name)};
 }
 
-double allowed_end(const scene::SceneDescription& scene, const scene::Material& material, const std::string& key,
-                   double end) {
+double allowed_end(const model::Scene& scene, const model::Material& material, const std::string& key, double end) {
   if (!is_projection(scene)) return end;
   const auto is_allowed = [&](double value) {
-    std::vector<scene::Material> materials = scene.materials;
-    for (scene::Material& m : materials)
+    std::vector<model::Material> materials = scene.materials;
+    for (model::Material& m : materials)
       if (m.name == material.name) m.values.set(key, value);
     return refusal(with_materials(scene, std::move(materials))).empty();
   };
@@ -136,8 +139,8 @@ double allowed_end(const scene::SceneDescription& scene, const scene::Material& 
   return in;
 }
 
-bool has_effect(const scene::SceneDescription& scene, const scene::Material& material, std::string_view key) {
-  return !is_projection(scene) || !material.info->liquid ||
+bool has_effect(const model::Scene& scene, const model::Material& material, std::string_view key) {
+  return !is_projection(scene) || !info_of(material).liquid ||
          std::find(of_stiffness.begin(), of_stiffness.end(), key) == of_stiffness.end();
 }
 

@@ -6,11 +6,11 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/matter.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/report_looks.h"
 #include "dreampm/play/solver_choice.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -35,8 +35,8 @@ double positive(const Action& a, std::size_t at) {
 
 /// The size of the box: nobody means more by a length.
 double box_size(const Playground::Impl& p) {
-  const scene::Space& space = p.simulation->scene().description().space;
-  return length(space.max - space.min);
+  const model::Space& space = p.simulation->scene().model().space;
+  return length(space.end() - space.min);
 }
 
 /// A length of what is in a place. One beyond the box would be cells without end.
@@ -50,9 +50,9 @@ double size_at(const Playground::Impl& p, const Action& a, std::size_t at) {
 /// A place in the box, or near it.
 Vec3d place_at(const Playground::Impl& p, const Action& a, std::size_t at) {
   constexpr double near = 100;
-  const scene::Space& space = p.simulation->scene().description().space;
+  const model::Space& space = p.simulation->scene().model().space;
   const Vec3d place = vector_at(a, at);
-  if (!(length(place - (space.min + space.max) * 0.5) <= near * box_size(p)))
+  if (!(length(place - (space.min + space.end()) * 0.5) <= near * box_size(p)))
     throw InputError(fmt::format("{}: ({}, {}, {}) is far from the box", a.verb, place.x, place.y, place.z));
   return place;
 }
@@ -60,16 +60,16 @@ Vec3d place_at(const Playground::Impl& p, const Action& a, std::size_t at) {
 bool is_off(const Action& a) { return a.words.size() == 1 && a.words[0] == "off"; }
 
 void wall(Playground::Impl& p, const Action& a) {
-  const scene::Space& space = p.simulation->scene().description().space;
+  const model::Space& space = p.simulation->scene().model().space;
   if (is_off(a)) {
     for (std::size_t side = 0; side < 6; ++side)
-      if (p.has_slab(side)) p.draw_wall(side, (side % 2 ? space.max : space.min)[static_cast<int>(side) / 2]);
+      if (p.has_slab(side)) p.draw_wall(side, (side % 2 ? space.end() : space.min)[static_cast<int>(side) / 2]);
     return;
   }
-  const auto name = std::find(scene::wall_names.begin(), scene::wall_names.end(), a.word(0));
-  if (name == scene::wall_names.end())
-    throw InputError(fmt::format("wall: no wall '{}'; there are {}", a.word(0), fmt::join(scene::wall_names, ", ")));
-  p.draw_wall(static_cast<std::size_t>(name - scene::wall_names.begin()), a.number(1));
+  const auto name = std::find(side_names.begin(), side_names.end(), a.word(0));
+  if (name == side_names.end())
+    throw InputError(fmt::format("wall: no wall '{}'; there are {}", a.word(0), fmt::join(side_names, ", ")));
+  p.draw_wall(static_cast<std::size_t>(name - side_names.begin()), a.number(1));
 }
 
 void can_undo(const Playground::Impl& p) {
@@ -242,11 +242,8 @@ const std::vector<Verb>& verbs() {
          const Vec3d at = place_at(p, a, 0), normal = vector_at(a, 3);
          if (!(length(normal) > 0)) throw InputError("cut: the normal must not be 0");
          const Turn turn = turn_to(normalized(normal));
-         const SceneShape disc =
-             SceneShape::yaml(fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: [{}, {}, {}], rotate: "
-                                          "{{axis: [{}, {}, {}], angle: {}}}}}",
-                                          size_at(p, a, 6), 2 * p.stage().scene.spacing(), at.x, at.y, at.z,
-                                          turn.axis.x, turn.axis.y, turn.axis.z, turn.angle));
+         const Shape disc =
+             Shape::cylinder(at, size_at(p, a, 6), 2 * p.stage().scene.spacing()).turned(turn.axis, turn.angle);
          p.before_edit("cut");
          const std::size_t before = p.simulation->particle_count();
          p.say(taken_text(p.simulation->remove(disc), before));

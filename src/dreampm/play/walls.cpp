@@ -7,10 +7,10 @@
 #include <cmath>
 
 #include "dreampm/error.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/play/playground_impl.h"
 #include "dreampm/play/solver_choice.h"
 #include "dreampm/play/wall_face.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::play {
 namespace {
@@ -31,7 +31,7 @@ constexpr double slack = 0.1;
 constexpr double least_space = 1.1;
 /// Cells that a rigid body may be in a wall that pushes it on.
 constexpr double most_inside = 0.1;
-constexpr const char* look = "{type: dielectric, ior: 1.5, absorption: [1, 0.5, 0.2]}";
+const model::Look look = model::Look::dielectric(1.5, {1, 0.5, 0.2});
 
 struct WallAxis {
   int axis;
@@ -59,25 +59,25 @@ bool reaches(const ColliderShape& body, int axis, double plane) {
 
 }  // namespace
 
-std::string wall_name(std::size_t side) { return fmt::format("wall-{}", scene::wall_names.at(side)); }
+std::string wall_name(std::size_t side) { return fmt::format("wall-{}", side_names.at(side)); }
 
 double Playground::Impl::wall_at(std::size_t side) const {
   const auto [axis, is_high] = axis_of(side);
-  const scene::Space& space = simulation->scene().description().space;
-  if (!has_slab(side)) return is_high ? space.max[axis] : space.min[axis];
+  const model::Space& space = simulation->scene().model().space;
+  if (!has_slab(side)) return is_high ? space.end()[axis] : space.min[axis];
   const std::string name = wall_name(side);
   const Box3d box = simulation->collider_shape(name).own_bounds();
   return simulation->collider(name).pose.position[axis] + (is_high ? box.min[axis] : box.max[axis]);
 }
 
 bool Playground::Impl::has_slab(std::size_t side) const {
-  const auto& colliders = simulation->scene().description().colliders;
+  const auto& colliders = simulation->scene().model().colliders;
   return std::any_of(colliders.begin(), colliders.end(), [&](const auto& c) { return c.name == wall_name(side); });
 }
 
 Box3d Playground::Impl::room() const {
-  const scene::Space& space = simulation->scene().description().space;
-  Box3d box{space.min, space.max};
+  const model::Space& space = simulation->scene().model().space;
+  Box3d box{space.min, space.end()};
   for (std::size_t side = 0; side < 6; ++side)
     if (has_slab(side)) {
       const WallAxis w = axis_of(side);
@@ -88,12 +88,12 @@ Box3d Playground::Impl::room() const {
 
 void Playground::Impl::draw_wall(std::size_t side, double to) {
   const WallAxis w = axis_of(side);
-  const scene::Space& space = simulation->scene().description().space;
-  const std::string name = scene::wall_names.at(side);
+  const model::Space& space = simulation->scene().model().space;
+  const std::string name(side_names.at(side));
   if (space.periodic[static_cast<std::size_t>(w.axis)])
     throw InputError(fmt::format("wall: {} has no wall, for the scene is periodic there", name));
-  const double own = w.is_high ? space.max[w.axis] : space.min[w.axis], other = wall_at(side ^ 1u);
-  const double least = other + w.sign() * least_room * (space.max[w.axis] - space.min[w.axis]);
+  const double own = w.is_high ? space.end()[w.axis] : space.min[w.axis], other = wall_at(side ^ 1u);
+  const double least = other + w.sign() * least_room * (space.end()[w.axis] - space.min[w.axis]);
   const double low = std::min(own, least), high = std::max(own, least);
   if (!(to >= low - rounding && to <= high + rounding))
     throw InputError(fmt::format("wall: {} is {} m: must be between {:.4g} and {:.4g}", name, to, low, high));
@@ -102,18 +102,16 @@ void Playground::Impl::draw_wall(std::size_t side, double to) {
   before_edit("wall " + name);
   if (!has_slab(side)) {
     // It is as thick as it may have to go, so that it reaches behind the wall wherever it is.
-    const Vec3d size = space.max - space.min;
+    const Vec3d size = space.end() - space.min;
     const double wide = std::max({size.x, size.y, size.z});
-    Box3d slab{space.min - Vec3d{wide, wide, wide}, space.max + Vec3d{wide, wide, wide}};
+    Box3d slab{space.min - Vec3d{wide, wide, wide}, space.end() + Vec3d{wide, wide, wide}};
     (w.is_high ? slab.min : slab.max)[w.axis] = own;
-    NewCollider collider{wall_name(side), SceneShape::box(slab.min, slab.max)};
-    const scene::Wall& wall = space.walls[side];
-    if (wall.type == WallType::slip || wall.type == WallType::stick)
-      collider.type = wall.type == WallType::slip ? "slip" : "stick";
-    if (wall.type != WallType::stick) collider.friction = wall.friction;
-    collider.look = look, collider.slack = slack;
+    model::Collider collider{wall_name(side), Shape::box(slab.min, slab.max)};
+    const Wall& wall = space.walls[side];
+    if (wall.type != WallType::open) collider.type = wall.type, collider.friction = wall.friction;
     try {
-      simulation->add_collider(collider);
+      simulation->add(collider, look);
+      simulation->set_slack(collider.name, slack);
     } catch (const InputError&) {
       if (history.edits() != edits) history.forget_edit();
       throw;
@@ -123,7 +121,7 @@ void Playground::Impl::draw_wall(std::size_t side, double to) {
 }
 
 bool Playground::Impl::is_full() const {
-  const scene::SceneDescription& scene = simulation->scene().description();
+  const model::Scene& scene = simulation->scene().model();
   if (!is_projection(scene)) return false;  // there matter presses back
   for (std::size_t side = 0; side < 6; ++side)
     if (scene.space.walls[side].type == WallType::open && !has_slab(side)) return false;
@@ -140,9 +138,9 @@ void Playground::Impl::move_walls() {
   for (std::size_t side = 0; side < 6; ++side) {
     if (!walls[side]) continue;
     const WallAxis w = axis_of(side);
-    const scene::Space& space = simulation->scene().description().space;
+    const model::Space& space = simulation->scene().model().space;
     const std::string name = wall_name(side);
-    const double dx = space.dx(), own = w.is_high ? space.max[w.axis] : space.min[w.axis], at = wall_at(side);
+    const double dx = space.dx(), own = w.is_high ? space.end()[w.axis] : space.min[w.axis], at = wall_at(side);
     const bool goes_back = *walls[side] == own;
     const double to = goes_back ? own + w.sign() * 2 * behind * dx : *walls[side];
     if (goes_back && (at - own) * w.sign() >= behind * dx) {
@@ -155,8 +153,8 @@ void Playground::Impl::move_walls() {
     if (std::abs(to - at) <= near_enough * dx) {
       walls[side].reset();
     } else {
-      const Vec3d size = space.max - space.min;
-      const double cells = is_projection(simulation->scene().description()) ? most_cells_projected : most_cells;
+      const Vec3d size = space.end() - space.min;
+      const double cells = is_projection(simulation->scene().model()) ? most_cells_projected : most_cells;
       const double most = std::min(most_lengths * size[w.axis], cells * dx / simulation->dt());
       speed = std::clamp((at - to) * w.sign() * wall_rate, -most, most);
       if (speed > 0) {

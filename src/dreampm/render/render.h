@@ -13,7 +13,7 @@
 #include "dreampm/geometry/mesh.h"
 #include "dreampm/io/png.h"
 #include "dreampm/math/vec.h"
-#include "dreampm/scene/sky_kind.h"
+#include "dreampm/model/render.h"
 
 namespace dreampm {
 

@@ -47,7 +47,13 @@ constexpr int pool_size = 64;
 
 class BulletContacts final : public BodyContacts {
  public:
-  BulletContacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room) : shapes_(shapes), room_(room) {}
+  BulletContacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room, const BulletContacts* before)
+      : shapes_(shapes), room_(room) {
+    if (!before) return;
+    kept_ = before->kept_;
+    for (std::size_t c = 0; c < before->forms_.size(); ++c)
+      if (before->shapes_[c].mesh) kept_.push_back({before->shapes_[c].mesh, before->forms_[c]});
+  }
 
   void resolve(std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies, const std::vector<Twist>& before,
                double dt) override {
@@ -90,8 +96,8 @@ class BulletContacts final : public BodyContacts {
       const Collider& collider = colliders[c];
       if (found == bodies.end()) {
         for (const Vec3d& shift : copies(collider, c)) {
-          btRigidBody& body = add(c, 0, forms_[c].shape.get(), {0, 0, 0});
-          place(body, together(collider.pose, forms_[c].placement), shift, collider);
+          btRigidBody& body = add(c, 0, forms_[c]->shape.get(), {0, 0, 0});
+          place(body, together(collider.pose, forms_[c]->placement), shift, collider);
           if (collider.moves())
             body.setCollisionFlags(body.getCollisionFlags() | btCollisionObject::CF_KINEMATIC_OBJECT);
           space.addRigidBody(&body);
@@ -99,7 +105,7 @@ class BulletContacts final : public BodyContacts {
         continue;
       }
       const auto number = static_cast<std::size_t>(found - bodies.begin());
-      Form& form = forms_[c];
+      Form& form = *forms_[c];
       if (!form.by_distance) put_together(number, *found, collider);
       btCollisionShape* const shape = form.by_distance ? form.shape.get() : compounds_[number].get();
       btRigidBody& body = add(c, found->mass, shape, bullet(principals_[number].moments));
@@ -161,7 +167,7 @@ class BulletContacts final : public BodyContacts {
   /// Shifts [m] at which a collider, or a copy of it beyond a periodic end, reaches into the box.
   std::vector<Vec3d> copies(const Collider& collider, std::size_t c) const {
     std::vector<Vec3d> shifts{{}};
-    if (room_.period == Vec3d{} || forms_[c].by_distance) return shifts;
+    if (room_.period == Vec3d{} || forms_[c]->by_distance) return shifts;
     const Box3d bounds = collider.bounds();
     const Vec3d period = period_of(bounds);
     for (int a = 0; a < 3; ++a) {
@@ -182,7 +188,7 @@ class BulletContacts final : public BodyContacts {
   void put_together(std::size_t number, const RigidBody& body, const Collider& collider) {
     auto compound = std::make_unique<btCompoundShape>(false);
     const Pose frame = frame_of(number, body);
-    const Form& form = forms_[body.collider];
+    const Form& form = *forms_[body.collider];
     for (const Vec3d& shift : copies(collider, body.collider)) {
       Pose at = together(inverse_of(frame), form.placement);
       at.position += together(collider.pose, frame).rotation.inverse()(shift);
@@ -206,8 +212,8 @@ class BulletContacts final : public BodyContacts {
         const double away = length(bounds.center() - collider.twist.center) + 0.5 * length(bounds.size());
         body.speed += length(collider.twist.velocity) + length(collider.twist.spin) * away;
       }
-      if (!forms_[c].by_distance) continue;
-      auto& shape = static_cast<DistanceShape&>(*forms_[c].shape);
+      if (!forms_[c]->by_distance) continue;
+      auto& shape = static_cast<DistanceShape&>(*forms_[c]->shape);
       const double ahead = body.speed * dt + context_.reach;
       Box3d within{bounds.min - Vec3d{ahead, ahead, ahead}, bounds.max + Vec3d{ahead, ahead, ahead}};
       for (int a = 0; a < 3; ++a)
@@ -228,13 +234,19 @@ class BulletContacts final : public BodyContacts {
   }
   void make_forms(const std::vector<Collider>& colliders, const std::vector<RigidBody>& bodies) {
     for (std::size_t c = 0; c < colliders.size(); ++c) {
-      forms_.push_back(form_of(shapes_[c], colliders[c], margin * room_.cell, room_.box.min));
-      any_by_distance_ = any_by_distance_ || (forms_[c].by_distance && shapes_[c].obstacle);
+      const auto known =
+          std::find_if(kept_.begin(), kept_.end(), [&](const Kept& k) { return k.mesh == shapes_[c].mesh; });
+      if (known != kept_.end() && shapes_[c].mesh && !colliders[c].rigid)
+        forms_.push_back(known->form);
+      else
+        forms_.push_back(std::make_shared<Form>(form_of(shapes_[c], colliders[c], margin * room_.cell, room_.box.min)));
+      any_by_distance_ = any_by_distance_ || (forms_[c]->by_distance && shapes_[c].obstacle);
     }
+    kept_.clear();
     compounds_.resize(bodies.size());
     for (const RigidBody& b : bodies) {
       principals_.push_back(principal(b.inertia));
-      const Form& form = forms_[b.collider];
+      const Form& form = *forms_[b.collider];
       const Pose to_frame = inverse_of(frame_of(principals_.size() - 1, b));
       if (form.by_distance) {
         auto& shape = static_cast<DistanceShape&>(*form.shape);
@@ -259,7 +271,13 @@ class BulletContacts final : public BodyContacts {
   std::vector<CollisionShape> shapes_;
   BodyRoom room_;
   ContactContext context_;
-  std::vector<Form> forms_;  ///< by collider
+  std::vector<std::shared_ptr<Form>> forms_;  ///< by collider
+  /// Forms of meshes, which take the longest to make, until there are forms of all.
+  struct Kept {
+    std::shared_ptr<const TriMesh> mesh;
+    std::shared_ptr<Form> form;
+  };
+  std::vector<Kept> kept_;
   std::vector<Principal> principals_;
   std::vector<std::unique_ptr<btCompoundShape>> compounds_;  ///< by body
   bool any_by_distance_ = false;
@@ -270,12 +288,13 @@ class BulletContacts final : public BodyContacts {
 
 }  // namespace
 
-std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room) {
-  return std::make_unique<BulletContacts>(shapes, room);
+std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room,
+                                                   BodyContacts* before) {
+  return std::make_unique<BulletContacts>(shapes, room, dynamic_cast<const BulletContacts*>(before));
 }
 
 template <class R>
-std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world) {
+std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world, BodyContacts* before) {
   if (world.rigid.empty()) return nullptr;
   BodyRoom room{{}, world.domain(), {}, world.dx};
   for (int side = 0; side < 6; ++side) {
@@ -289,9 +308,9 @@ std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world) {
     normal[axis] = side % 2 == 0 ? 1 : -1;
     room.walls.push_back({side % 2 == 0 ? room.box.min : room.box.max, normal});
   }
-  return make_bullet_contacts(world.collision, room);
+  return make_bullet_contacts(world.collision, room, before);
 }
-template std::unique_ptr<BodyContacts> make_body_contacts(const World<float>&);
-template std::unique_ptr<BodyContacts> make_body_contacts(const World<double>&);
+template std::unique_ptr<BodyContacts> make_body_contacts(const World<float>&, BodyContacts*);
+template std::unique_ptr<BodyContacts> make_body_contacts(const World<double>&, BodyContacts*);
 
 }  // namespace dreampm

@@ -22,10 +22,12 @@ struct BodyRoom {
 };
 
 /// `shapes`: of each collider; the vertices of their meshes count from the low corner of the box.
-std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room);
+std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room,
+                                                   BodyContacts* before = nullptr);
 
-/// Of a world with rigid bodies; null of one without.
+/// Of a world with rigid bodies; null of one without. `before`: of the same world with other
+/// colliders, which may be null: what is known of meshes that stay is taken over.
 template <class R>
-std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world);
+std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world, BodyContacts* before = nullptr);
 
 }  // namespace dreampm

@@ -83,6 +83,9 @@ class Engine {
     motion_ = *motion;
     upload(MatterFields::motion);
   }
+  /// After an edit that brought colliders into the world or took some out; `form_grid` comes before
+  /// the next step.
+  void colliders_changed() { contacts_ = make_body_contacts(world_, contacts_.get()); }
   /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
   /// another edit may still put things right.
   void form_grid() { solver_->form_grid(world_, motion_); }

@@ -29,13 +29,13 @@ void forget_paths(Shape& shape) {
   each_model(shape, [](std::string& path) { path.clear(); });
 }
 
-void add_simulation(Hash64& hash, SceneDescription s) {
+void add_simulation(Hash64& hash, model::Scene s) {
   for (const Body& b : s.bodies) add_files(hash, b.shape);
   for (const Collider& c : s.colliders) add_files(hash, c.shape);
   for (const Emitter& e : s.emitters) add_files(hash, e.shape);
   for (const Sink& k : s.sinks) add_files(hash, k.shape);
   if (!s.start.empty()) add_file(hash, s.start);
-  s.space.asked_max = s.space.max;  // what was rounded up to the same walls is the same
+  s.space.max = s.space.end();  // what was rounded up to the same walls is the same
   s.time.frames = 1;
   for (Body& b : s.bodies) forget_paths(b.shape), b.color.reset();
   for (Collider& c : s.colliders) forget_paths(c.shape);
@@ -56,7 +56,7 @@ void add_simulation(Hash64& hash, SceneDescription s) {
   hash.add(std::string_view(write_yaml(decides)));
 }
 
-void add_colors(Hash64& hash, const SceneDescription& s) {
+void add_colors(Hash64& hash, const model::Scene& s) {
   for (const Body& b : s.bodies)
     hash.add(std::string_view(b.color ? fmt::format("{} {} {}", b.color->x, b.color->y, b.color->z) : "none"));
 }
@@ -64,7 +64,7 @@ void add_colors(Hash64& hash, const SceneDescription& s) {
 void add_text(Hash64& hash, const YamlNode& map) { hash.add(std::string_view(write_yaml(map))); }
 
 /// What is measured changes no state, but only a new simulation measures it.
-void add_probes(Hash64& hash, SceneDescription s) {
+void add_probes(Hash64& hash, model::Scene s) {
   for (Probe& p : s.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) {
       add_files(hash, region->shape);
@@ -77,14 +77,14 @@ void add_probes(Hash64& hash, SceneDescription s) {
 
 std::string flow_text(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
-std::string emit_scene(const SceneDescription& scene) {
+std::string emit_scene(const model::Scene& scene) {
   YamlNode root = YamlNode::map();
   root.put("dreampm", write_count(format_version));
   for (Entry& e : write_map(scene, scene_schema()).entries) root.entries.push_back(std::move(e));
   return write_yaml(root);
 }
 
-std::string scene_hash(const SceneDescription& scene, Part part, const std::string& simulation) {
+std::string scene_hash(const model::Scene& scene, Part part, const std::string& simulation) {
   Hash64 hash;
   if (part <= Part::particles || simulation.empty()) add_simulation(hash, scene);
   if (part == Part::simulation) return hash.hex();
@@ -110,8 +110,8 @@ std::string scene_hash(const SceneDescription& scene, Part part, const std::stri
   return later.hex();
 }
 
-std::string probe_hash(const SceneDescription& scene, const Probe& probe) {
-  SceneDescription alone = scene;
+std::string probe_hash(const model::Scene& scene, const model::Probe& probe) {
+  model::Scene alone = scene;
   alone.probes = {probe};
   Hash64 hash;
   add_probes(hash, std::move(alone));

@@ -2,13 +2,13 @@
 #pragma once
 #include <string>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm::scene {
 
 /// The scene as YAML with every value explicit and no variants. Numbers read back exactly:
 /// parse_scene_text(emit_scene(d)) gives d again.
-std::string emit_scene(const SceneDescription& scene);
+std::string emit_scene(const model::Scene& scene);
 
 /// "[x, y, z]", which a scene reads back exactly.
 std::string flow_text(const Vec3d& v);
@@ -29,9 +29,9 @@ enum class Part {
 /// time.frames (more frames continue a run), where meshes lie (their bytes count). `simulation`:
 /// the hash of that part as a run's record has it. The parts from surface on then need no model
 /// file.
-std::string scene_hash(const SceneDescription& scene, Part part, const std::string& simulation = {});
+std::string scene_hash(const model::Scene& scene, Part part, const std::string& simulation = {});
 
 /// The same for what one of the scene's probes measures.
-std::string probe_hash(const SceneDescription& scene, const Probe& probe);
+std::string probe_hash(const model::Scene& scene, const model::Probe& probe);
 
 }  // namespace dreampm::scene

@@ -6,10 +6,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/scene/value.h"
 #include "dreampm/scene/value_info.h"
 #include "dreampm/version.h"
@@ -21,7 +23,10 @@ struct Reading {
   Problems& problems;
   std::string folder;               ///< of the scene file: mesh paths are looked for here first
   std::vector<std::string> assets;  ///< names that asset:NAME may have
-  bool of_run = false;              ///< ParseOptions::of_run
+  /// Where models are: beside the scene or in the working folder; in the scene's folder, as in a
+  /// run's; or where they are named, which nobody looks at.
+  enum class Models { looked_for, in_folder, as_named } models = Models::looked_for;
+  std::map<std::string, model::Mark> marks{};  ///< where parts are said, by path
 };
 
 template <class T>

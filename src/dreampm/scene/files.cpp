@@ -37,17 +37,17 @@ void each_model(Shape& shape, const std::function<void(std::string&)>& each) {
     for (Shape& hollow : c->hollow) each_model(hollow, each);
 }
 
-void each_model(SceneDescription& scene, const std::function<void(std::string&)>& each) {
+void each_model(model::Scene& scene, const std::function<void(std::string&)>& each) {
   if (!scene.start.empty()) each(scene.start);
-  for (Body& b : scene.bodies) each_model(b.shape, each);
-  for (Collider& c : scene.colliders) {
+  for (model::Body& b : scene.bodies) each_model(b.shape, each);
+  for (model::Collider& c : scene.colliders) {
     each_model(c.shape, each);
     if (c.sequence)
       for (std::string& file : c.sequence->files) each(file);
   }
-  for (Emitter& e : scene.emitters) each_model(e.shape, each);
-  for (Sink& s : scene.sinks) each_model(s.shape, each);
-  for (Probe& p : scene.probes)
+  for (model::Emitter& e : scene.emitters) each_model(e.shape, each);
+  for (model::Sink& s : scene.sinks) each_model(s.shape, each);
+  for (model::Probe& p : scene.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) each_model(region->shape, each);
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm::scene {
 
@@ -14,7 +14,7 @@ namespace dreampm::scene {
 /// file, or asset:NAME.
 void each_model(Shape& shape, const std::function<void(std::string& path)>& each);
 /// The same for all shapes of a scene: bodies, colliders, regions of probes.
-void each_model(SceneDescription& scene, const std::function<void(std::string& path)>& each);
+void each_model(model::Scene& scene, const std::function<void(std::string& path)>& each);
 
 /// The files that a model consists of: itself, and the buffers that a .gltf or .gltf.gz names,
 /// relative to its folder. Throws InputError for a .gltf that cannot be read and for a buffer that

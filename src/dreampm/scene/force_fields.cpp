@@ -1,5 +1,6 @@
 // fields: what acts on matter from afar. Each type's keys come from its own table
 // (physics/field.h).
+#include "dreampm/physics/fields.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -84,7 +85,7 @@ const Schema<FieldDraft<F>>& field_schema() {
 
 }  // namespace
 
-void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_fields(Reading& in, const YamlNode& node, model::Scene& out) {
   std::vector<std::string> types;
   Fields::for_each([&]<class F>() { types.emplace_back(F::name); });
   read_named(in, node, "fields", [&](const Entry& e, const std::string& path) {
@@ -98,8 +99,8 @@ void read_fields(Reading& in, const YamlNode& node, SceneDescription& out) {
       if (F::name != *name) return;
       FieldDraft<F> draft;
       read_map(in, e.value, path, field_schema<F>(), draft, {"type"});
-      field.field = draft.field;
-      field.box = draft.box;
+      field = as_model(draft.field);
+      field.name = e.key, field.box = draft.box;
     });
   });
 }
@@ -114,18 +115,23 @@ ValueInfo fields_info() {
   }));
 }
 
-YamlNode write_fields(const SceneDescription& scene) {
+YamlNode write_fields(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
-  for (const ForceField& f : scene.fields)
-    std::visit(
-        [&]<class F>(const F& field) {
-          YamlNode one = YamlNode::map();
-          one.put("type", YamlNode::scalar(std::string(F::name)));
-          for (Entry& e : write_map(FieldDraft<F>{field, f.box}, field_schema<F>()).entries)
-            one.entries.push_back(std::move(e));
-          all.put(f.name, std::move(one));
-        },
-        f.field);
+  for (const ForceField& f : scene.fields) {
+    YamlNode one = YamlNode::map();
+    one.put("type", YamlNode::scalar(f.type));
+    Fields::for_each([&]<class F>() {
+      if (F::name != f.type) return;
+      const FieldDraft<F> draft{with_members<F>(f.numbers, f.vectors), f.box};
+      for (Entry& e : write_map(draft, field_schema<F>()).entries) one.entries.push_back(std::move(e));
+    });
+    // The type has no such keys: to be refused.
+    for (const auto& [key, value] : f.numbers)
+      if (!one.find(key)) one.put(key, write_number(value));
+    for (const auto& [key, value] : f.vectors)
+      if (!one.find(key)) one.put(key, write_vector(value));
+    all.put(f.name, std::move(one));
+  }
   return all;
 }
 

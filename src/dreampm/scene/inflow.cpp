@@ -48,7 +48,8 @@ Field<Emitter> flow() {
       .says("How much comes in, constant or by keys over time, in place of a velocity.");
 }
 
-/// Names are looked up in `materials`.
+}  // namespace
+
 Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
   return {
       material_name(materials, &Emitter::material).says("What comes in."),
@@ -76,6 +77,8 @@ Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
   };
 }
 
+namespace {
+
 const Schema<Sink>& sink_schema() {
   static const Schema<Sink> schema{bounded_shape(&Sink::shape).says("Where matter is taken out."),
                                    motion_field<Sink>()};
@@ -84,7 +87,7 @@ const Schema<Sink>& sink_schema() {
 
 }  // namespace
 
-void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_emitters(Reading& in, const YamlNode& node, model::Scene& out) {
   const Schema<Emitter> schema = emitter_schema(out.materials);
   read_named(in, node, "emitters", [&](const Entry& e, const std::string& path) {
     Emitter& one = add_named(out.emitters, e);
@@ -102,7 +105,7 @@ void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out) {
   });
 }
 
-void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_sinks(Reading& in, const YamlNode& node, model::Scene& out) {
   read_named(in, node, "sinks", [&](const Entry& e, const std::string& path) {
     if (std::any_of(out.colliders.begin(), out.colliders.end(), [&](const Collider& c) { return c.name == e.key; }))
       in.problems.error(e.at, fmt::format("{}: a collider has this name too", path));
@@ -121,14 +124,14 @@ ValueInfo emitters_info() {
 
 ValueInfo sinks_info() { return names_info(map_of(sink_schema())); }
 
-YamlNode write_emitters(const SceneDescription& scene) {
+YamlNode write_emitters(const model::Scene& scene) {
   const Schema<Emitter> schema = emitter_schema(scene.materials);
   YamlNode all = YamlNode::map();
   for (const Emitter& e : scene.emitters) all.put(e.name, write_map(e, schema));
   return all;
 }
 
-YamlNode write_sinks(const SceneDescription& scene) {
+YamlNode write_sinks(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Sink& s : scene.sinks) all.put(s.name, write_map(s, sink_schema()));
   return all;

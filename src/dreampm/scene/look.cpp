@@ -1,4 +1,5 @@
 // output, surface, render, video: what is kept and how it is shown.
+#include "dreampm/physics/param.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -15,7 +16,9 @@ Field<T> only_word(std::string key, std::string word) {
       .takes(word_info({word}));
 }
 
-std::vector<std::string> attribute_words() { return {particle_attributes.begin(), particle_attributes.end()}; }
+std::vector<std::string> attribute_words() {
+  return {model::particle_attributes.begin(), model::particle_attributes.end()};
+}
 
 Field<Output> attributes() {
   return Field<Output>{"attributes",
@@ -162,6 +165,8 @@ Field<Look> grain() {
   return f;
 }
 
+}  // namespace
+
 const Schema<Look>& look_schema() {
   const auto rough = [](const Look& l) { return l.type != LookType::dielectric && l.type != LookType::spheres; };
   static const Schema<Look> schema{
@@ -192,6 +197,8 @@ const Schema<Look>& look_schema() {
   };
   return schema;
 }
+
+namespace {
 
 /// What a look has where the scene says its type and no more.
 void give_defaults(Look& look, const YamlNode& given) {
@@ -298,12 +305,18 @@ const Schema<Video>& video_schema() {
   return schema;
 }
 
-void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene) {
+void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out) {
+  read_map(in, node, path, look_schema(), out);
+  give_defaults(out, node);
+  if (out.type == LookType::dielectric) out.color = Look{}.color;  // it has none, whatever was usual here
+}
+
+void read_looks(Reading& in, const YamlNode* render, model::Scene& scene) {
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);
     Look look;
-    look.type = m.info && !m.info->liquid ? LookType::opaque : LookType::dielectric;
+    look.type = !info_of(m).liquid ? LookType::opaque : LookType::dielectric;
     scene.render.looks[m.name] = look;
   }
   for (const Collider& c : scene.colliders) {
@@ -329,8 +342,7 @@ void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene) {
       return in.problems.error(
           e.at, fmt::format("{}: no material, collider or rigid body '{}'{}", path, e.key, suggest(e.key, names)));
     Look& look = found->second;
-    read_map(in, e.value, path, look_schema(), look);
-    give_defaults(look, e.value);
+    read_look(in, e.value, path, look);
     const bool collider =
         std::any_of(scene.colliders.begin(), scene.colliders.end(), [&](const Collider& c) { return c.name == e.key; });
     if (collider && look.type == LookType::spheres)

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "dreampm/physics/param.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -54,12 +55,12 @@ bool is_transfer_key(const std::string& key) {
 }
 
 void read_params(Reading& in, const YamlNode& node, const std::string& path, Material& out) {
-  const MaterialInfo& info = *out.info;
+  const MaterialInfo& info = info_of(out);
   std::map<std::string, double> values;
   std::vector<std::string> known{"type", "preset"};
   for (const Param& p : info.params) known.emplace_back(p.key);
   known.insert(known.end(), transfer_keys().begin(), transfer_keys().end());
-  read_transfer(in, node, path, out.transfer);
+  read_transfer(in, node, path, out);
   if (const YamlNode* n = node.find("preset")) {
     std::vector<std::string> names;
     for (const Preset& p : info.presets) names.emplace_back(p.name);
@@ -203,6 +204,8 @@ const Schema<Collider>& pin_schema() {
   return schema;
 }
 
+}  // namespace
+
 const Schema<Collider>& collider_schema() {
   static const Schema<Collider> schema{
       shape_or_sequence(),
@@ -231,8 +234,6 @@ const Schema<Collider>& collider_schema() {
   return schema;
 }
 
-}  // namespace
-
 bool good_name(std::string_view s) {
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); };
   if (s.empty() || s.size() > 64 || !letter(s[0])) return false;
@@ -245,11 +246,13 @@ void read_named(Reading& in, const YamlNode& node, const std::string& path,
   for (const Entry& e : node.entries) {
     if (!good_name(e.key))
       in.problems.error(e.at, fmt::format("{}: the name '{}' must be {}", path, e.key, good_name_rule));
-    each(e, fmt::format("{}.{}", path, e.key));
+    std::string own = fmt::format("{}.{}", path, e.key);
+    each(e, own);
+    in.marks[std::move(own)] = {e.at.line, e.at.column};
   }
 }
 
-void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_materials(Reading& in, const YamlNode& node, model::Scene& out) {
   read_named(in, node, "materials", [&](const Entry& e, const std::string& path) {
     Material& m = add_named(out.materials, e);
     if (!expect_map(in.problems, e.value, path)) return;
@@ -257,16 +260,16 @@ void read_materials(Reading& in, const YamlNode& node, SceneDescription& out) {
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
     const auto name = read_word(in.problems, *type, path + ".type", material_names());
     if (!name) return;
-    m.info = find_material(*name);
+    m.type = *name;
     read_params(in, e.value, path, m);
   });
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "materials is empty: name at least one");
-  if (out.materials.size() > most_materials)
+  if (out.materials.size() > model::most_materials)
     in.problems.error(node.at,
-                      fmt::format("materials: {} are named; at most {}", out.materials.size(), most_materials));
+                      fmt::format("materials: {} are named; at most {}", out.materials.size(), model::most_materials));
 }
 
-void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_bodies(Reading& in, const YamlNode& node, model::Scene& out) {
   const Schema<Body> schema = body_schema(out.materials);
   read_named(in, node, "bodies", [&](const Entry& e, const std::string& path) {
     read_map(in, e.value, path, schema, add_named(out.bodies, e));
@@ -274,7 +277,7 @@ void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out) {
   if (node.is_map() && node.entries.empty()) in.problems.error(node.at, "bodies is empty: name at least one");
 }
 
-void check_cuts(Reading& in, const YamlNode* bodies, const SceneDescription& scene) {
+void check_cuts(Reading& in, const YamlNode* bodies, const model::Scene& scene) {
   if (!bodies || !bodies->is_map()) return;
   std::vector<std::string> names;
   for (const Collider& c : scene.colliders)
@@ -289,7 +292,7 @@ void check_cuts(Reading& in, const YamlNode* bodies, const SceneDescription& sce
   }
 }
 
-void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_colliders(Reading& in, const YamlNode& node, model::Scene& out) {
   read_named(in, node, "colliders", [&](const Entry& e, const std::string& path) {
     if (std::any_of(out.materials.begin(), out.materials.end(), [&](const Material& m) { return m.name == e.key; }))
       in.problems.error(e.at, fmt::format("{}: a material has this name too, and looks go by name", path));
@@ -297,7 +300,7 @@ void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out) {
   });
 }
 
-void read_pins(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_pins(Reading& in, const YamlNode& node, model::Scene& out) {
   read_named(in, node, "pins", [&](const Entry& e, const std::string& path) {
     const auto has_it = [&](const auto& list) {
       return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == e.key; });
@@ -327,37 +330,44 @@ ValueInfo colliders_info() { return names_info(map_of(collider_schema())); }
 
 ValueInfo pins_info() { return names_info(map_of(pin_schema())); }
 
-YamlNode write_pins(const SceneDescription& scene) {
+YamlNode write_pins(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
     if (c.pin) all.put(c.name, write_map(c, pin_schema()));
   return all;
 }
 
-YamlNode write_materials(const SceneDescription& scene) {
+YamlNode write_materials(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Material& m : scene.materials) {
     YamlNode one = YamlNode::map();
-    one.put("type", YamlNode::scalar(std::string(m.info->name)));
-    for (const Param& p : m.info->params) {
+    one.put("type", YamlNode::scalar(m.type));
+    const MaterialInfo* info = find_material(m.type);
+    const std::span<const Param> params = info ? info->params : std::span<const Param>{};
+    for (const Param& p : params) {
       bool given_otherwise = false;  // the other way to say it has a value
-      for (const Param& q : m.info->params) given_otherwise |= q.excludes == p.key && m.values.has(q.key);
+      for (const Param& q : params) given_otherwise |= q.excludes == p.key && m.values.has(q.key);
       if (m.values.has(p.key) && !given_otherwise) one.put(std::string(p.key), write_param(p, m.values[p.key]));
     }
-    write_transfer(m.transfer, one);
+    // To be refused: keys that the type has not, and what is no number where nothing works it out.
+    for (const auto& [key, value] : m.values) {
+      const Param* p = info ? info->find(key) : nullptr;
+      if (!p || (std::isnan(value) && !std::isnan(p->value))) one.put(key, write_number(value));
+    }
+    write_transfer(m, one);
     all.put(m.name, std::move(one));
   }
   return all;
 }
 
-YamlNode write_bodies(const SceneDescription& scene) {
+YamlNode write_bodies(const model::Scene& scene) {
   const Schema<Body> schema = body_schema(scene.materials);
   YamlNode all = YamlNode::map();
   for (const Body& b : scene.bodies) all.put(b.name, write_map(b, schema));
   return all;
 }
 
-YamlNode write_colliders(const SceneDescription& scene) {
+YamlNode write_colliders(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
     if (!c.rigid && !c.pin) all.put(c.name, write_map(c, collider_schema()));

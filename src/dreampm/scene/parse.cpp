@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -32,20 +33,19 @@ bool check_version(Problems& problems, const YamlNode& root) {
   return true;
 }
 
-void warn_unused(Reading& in, const YamlNode& root, const SceneDescription& scene) {
+void warn_unused(Reading& in, const YamlNode& root, const model::Scene& scene) {
   if (!scene.start.empty()) return;  // what there is of them stands in that file
-  std::vector<bool> used(scene.materials.size());
-  for (const Body& b : scene.bodies) used[std::size_t(b.material)] = true;
-  for (const Emitter& e : scene.emitters) used[std::size_t(e.material)] = true;
+  std::set<std::string> used;
+  for (const Body& b : scene.bodies) used.insert(b.material);
+  for (const Emitter& e : scene.emitters) used.insert(e.material);
   const YamlNode* map = root.find("materials");
   for (const Entry& e : map->entries)
-    for (std::size_t i = 0; i < used.size(); ++i)
-      if (scene.materials[i].name == e.key && !used[i])
-        in.problems.warning(e.at, fmt::format("materials.{}: no body or emitter is made of it", e.key));
+    if (!used.contains(e.key))
+      in.problems.warning(e.at, fmt::format("materials.{}: no body or emitter is made of it", e.key));
 }
 
 /// The mesh's grid goes with the particles, so what fits in cells depends on how many are in one.
-void check_voxel(Reading& in, const YamlNode& root, const SceneDescription& scene) {
+void check_voxel(Reading& in, const YamlNode& root, const model::Scene& scene) {
   const double per_dx = std::cbrt(scene.space.particles_per_cell), voxel = scene.surface.voxel * per_dx;
   if (voxel >= 0.125 && voxel <= 2 * (1 + 1e-12)) return;
   const YamlNode* surface = root.find("surface");
@@ -56,8 +56,10 @@ void check_voxel(Reading& in, const YamlNode& root, const SceneDescription& scen
                                 scene.surface.voxel, 0.125 / per_dx, 2 / per_dx));
 }
 
-SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string& variant) {
-  SceneDescription scene;
+}  // namespace
+
+model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& variant) {
+  model::Scene scene;
   if (!root.is_map()) {
     expect_map(in.problems, root, "the scene");
     return scene;
@@ -69,8 +71,11 @@ SceneDescription read_scene(Reading& in, const YamlNode& root, const std::string
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
   if (in.problems.errors() == 0) check_voxel(in, root, scene);
   if (in.problems.errors() == 0) warn_unused(in, root, scene);
+  scene.marks = std::move(in.marks);
   return scene;
 }
+
+namespace {
 
 /// What a variant may not hold; its other keys are checked with the scene that it changes.
 void check_variants(Reading& in, const YamlNode& variants) {
@@ -87,7 +92,7 @@ void check_with(Reading& in, const YamlNode& base, const Entry* variant) {
   YamlNode root = base;
   if (variant) merge(root, variant->value);
   Problems found;
-  Reading inner{found, in.folder, in.assets, in.of_run};
+  Reading inner{found, in.folder, in.assets, in.models, {}};
   read_scene(inner, root, variant ? variant->key : "");
   const std::vector<Problem> before = in.problems.list();
   for (const Problem& p : found.list())
@@ -126,7 +131,11 @@ std::vector<Problem> sorted(const std::vector<Problem>& list) {
 ParseResult parse(std::string_view text, const std::string& file, const ParseOptions& options) {
   ParseResult result;
   Problems problems;
-  Reading in{problems, std::filesystem::path(file).parent_path().string(), options.assets, options.of_run};
+  Reading in{problems,
+             std::filesystem::path(file).parent_path().string(),
+             options.assets,
+             options.of_run ? Reading::Models::in_folder : Reading::Models::looked_for,
+             {}};
   const YamlNode base = read_yaml(text, file, problems);
   const auto done = [&] {
     result.problems = sorted(problems.list());
@@ -198,8 +207,8 @@ ParseResult parse_scene(const std::filesystem::path& path, const ParseOptions& o
   return parse(text, path.string(), options);
 }
 
-SceneDescription load_scene(const std::filesystem::path& path, const ParseOptions& options,
-                            std::vector<Problem>* warnings) {
+model::Scene load_scene(const std::filesystem::path& path, const ParseOptions& options,
+                        std::vector<Problem>* warnings) {
   ParseResult result = parse_scene(path, options);
   std::string errors;
   for (const Problem& p : result.problems) {

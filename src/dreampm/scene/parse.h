@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dreampm/import/asset_names.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/scene/problem.h"
 
 namespace dreampm::scene {
@@ -24,7 +24,7 @@ struct ParseOptions {
 };
 
 struct ParseResult {
-  SceneDescription scene;             ///< complete only if ok()
+  model::Scene scene;                 ///< complete only if ok()
   std::vector<Problem> problems;      ///< all of them, by line; warnings too
   std::vector<std::string> variants;  ///< names of the file's variants
   bool ok() const;
@@ -42,7 +42,7 @@ ParseResult parse_scene(const std::filesystem::path& path, const ParseOptions& o
 
 /// The scene, or InputError with every error on a line of its own. Warnings are handed to
 /// `warnings` if it is given.
-SceneDescription load_scene(const std::filesystem::path& path, const ParseOptions& options = {},
-                            std::vector<Problem>* warnings = nullptr);
+model::Scene load_scene(const std::filesystem::path& path, const ParseOptions& options = {},
+                        std::vector<Problem>* warnings = nullptr);
 
 }  // namespace dreampm::scene

@@ -60,7 +60,8 @@ std::string find_file(Reading& in, const YamlNode& n, const std::string& path, c
   namespace fs = std::filesystem;
   std::error_code none;
   const fs::path beside = (fs::path(in.folder) / name).lexically_normal();
-  if (in.of_run) return beside.string();
+  if (in.models == Reading::Models::in_folder) return beside.string();
+  if (in.models == Reading::Models::as_named) return name;
   for (const fs::path& p : {beside, fs::path(name)})
     if (fs::is_regular_file(p, none)) return p.string();
   in.problems.error(

@@ -1,6 +1,6 @@
 // probes: what is measured. The keys of each type stand in a table of their own; the types in
 // ProbeForm.
-#include "dreampm/scene/probes.h"
+#include "dreampm/model/probes.h"
 
 #include <map>
 #include <utility>
@@ -27,9 +27,9 @@ std::vector<std::string> names_of(const std::vector<T>& things) {
   return names;
 }
 
-/// A name of one of the scene's `things` ("material", "body") as its index.
+/// The name of one of the scene's `things` ("material", "body").
 template <class P, class T>
-Field<P> reference(std::string key, int P::* member, const char* kind, const std::vector<T>& things) {
+Field<P> reference(std::string key, std::string P::* member, const char* kind, const std::vector<T>& things) {
   return Field<P>{std::move(key),
                   [=, &things](Reading& in, const YamlNode& n, const std::string& path, P& out) {
                     const std::vector<std::string> names = names_of(things);
@@ -40,10 +40,10 @@ Field<P> reference(std::string key, int P::* member, const char* kind, const std
                       in.problems.error(n.at,
                                         fmt::format("{}: no {} '{}'{}", path, kind, *name, suggest(*name, names)));
                     else
-                      out.*member = int(found - names.begin());
+                      out.*member = *name;
                   },
-                  [=, &things](const P& p, const std::string& k, YamlNode& map) {
-                    if (p.*member >= 0) map.put(k, write_text(things[std::size_t(p.*member)].name));
+                  [=](const P& p, const std::string& k, YamlNode& map) {
+                    if (!(p.*member).empty()) map.put(k, write_text(p.*member));
                   }}
       .takes(text_info(fmt::format("the name of a {}", kind)));
 }
@@ -51,14 +51,15 @@ Field<P> reference(std::string key, int P::* member, const char* kind, const std
 /// Says where on an axis a point lies outside the space; matter goes beyond open walls, and so may
 /// probes.
 void check_inside(Reading& in, const Place& at, const std::string& path, const Space& space, int axis, double v) {
-  const bool below = v<space.min[axis], above = v> space.max[axis];
+  const Vec3d end = space.end();
+  const bool below = v<space.min[axis], above = v> end[axis];
   if ((!below && !above) || space.walls[std::size_t(2 * axis + above)].type == WallType::open) return;
   in.problems.error(
-      at, fmt::format("{} is {}: must be between the walls, {} and {} m", path, v, space.min[axis], space.max[axis]));
+      at, fmt::format("{} is {}: must be between the walls, {} and {} m", path, v, space.min[axis], end[axis]));
 }
 
 template <class P>
-Field<P> place(std::string key, Vec3d P::* member, const SceneDescription& scene) {
+Field<P> place(std::string key, Vec3d P::* member, const model::Scene& scene) {
   Field<P> f = vector(std::move(key), member, any_number("m"));
   f.read = [=, &scene, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
@@ -84,7 +85,7 @@ Field<P> direction(std::string key, Vec3d P::* member, const char* way) {
 
 /// A ball thinner than the spacing falls between the particles.
 template <class P>
-Field<P> radius(const SceneDescription& scene) {
+Field<P> radius(const model::Scene& scene) {
   Field<P> f = number("radius", &P::radius, above_zero("m"));
   f.read = [=, &scene, read = f.read](Reading& in, const YamlNode& n, const std::string& path, P& out) {
     const int before = in.problems.errors();
@@ -97,7 +98,7 @@ Field<P> radius(const SceneDescription& scene) {
 }
 
 constexpr std::string_view help_of(const HeightProbe*) { return "The height of the free surface above a point."; }
-Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
+Schema<HeightProbe> keys_of(const HeightProbe*, const model::Scene& scene) {
   return {Field<HeightProbe>{
       "at",
       [&scene](Reading& in, const YamlNode& n, const std::string& path, HeightProbe& out) {
@@ -123,19 +124,19 @@ Schema<HeightProbe> keys_of(const HeightProbe*, const SceneDescription& scene) {
 }
 
 constexpr std::string_view help_of(const PressureProbe*) { return "The pressure of the matter at a point of a wall."; }
-Schema<PressureProbe> keys_of(const PressureProbe*, const SceneDescription& scene) {
+Schema<PressureProbe> keys_of(const PressureProbe*, const model::Scene& scene) {
   return {place("at", &PressureProbe::at, scene),
           direction("normal", &PressureProbe::normal, "out of the wall, into the matter"),
           radius<PressureProbe>(scene)};
 }
 
 constexpr std::string_view help_of(const VelocityProbe*) { return "The mean velocity of the matter around a point."; }
-Schema<VelocityProbe> keys_of(const VelocityProbe*, const SceneDescription& scene) {
+Schema<VelocityProbe> keys_of(const VelocityProbe*, const model::Scene& scene) {
   return {place("at", &VelocityProbe::at, scene), radius<VelocityProbe>(scene)};
 }
 
 constexpr std::string_view help_of(const FluxProbe*) { return "The volume that passes a plane along its normal."; }
-Schema<FluxProbe> keys_of(const FluxProbe*, const SceneDescription& scene) {
+Schema<FluxProbe> keys_of(const FluxProbe*, const model::Scene& scene) {
   return {std::move(
               nested<FluxProbe>("plane", {place("point", &FluxProbe::point, scene),
                                           direction("normal", &FluxProbe::normal, "the way that counts as positive")}))
@@ -144,7 +145,7 @@ Schema<FluxProbe> keys_of(const FluxProbe*, const SceneDescription& scene) {
 }
 
 constexpr std::string_view help_of(const RegionProbe*) { return "What lies within a shape."; }
-Schema<RegionProbe> keys_of(const RegionProbe*, const SceneDescription&) {
+Schema<RegionProbe> keys_of(const RegionProbe*, const model::Scene&) {
   return {Field<RegionProbe>{
       "shape",
       [](Reading& in, const YamlNode& n, const std::string& path, RegionProbe& out) {
@@ -156,18 +157,10 @@ Schema<RegionProbe> keys_of(const RegionProbe*, const SceneDescription&) {
               .says("Where to look.")};
 }
 
-/// The wall of that name, floor and ceiling included, or -1.
-int wall_called(const std::string& name) {
-  if (name == "floor") return y_min;
-  if (name == "ceiling") return y_max;
-  const auto found = std::find(wall_names.begin(), wall_names.end(), name);
-  return found == wall_names.end() ? -1 : int(found - wall_names.begin());
-}
-
 constexpr std::string_view help_of(const ForceProbe*) {
   return "The force of the matter on a wall, collider or rigid body.";
 }
-Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
+Schema<ForceProbe> keys_of(const ForceProbe*, const model::Scene& scene) {
   return {Field<ForceProbe>{
       "on",
       [&scene](Reading& in, const YamlNode& n, const std::string& path, ForceProbe& out) {
@@ -175,19 +168,17 @@ Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
         if (!name) return;
         const auto bad = [&](const std::string& why) { in.problems.error(n.at, fmt::format("{}: {}", path, why)); };
         out.on = *name;
-        out.wall = wall_called(*name);
+        const std::optional<Side> wall = side_called(*name);
         std::vector<std::string> names = names_of(scene.colliders);
-        const auto found = std::find(names.begin(), names.end(), *name);
-        if (found != names.end()) out.collider = int(found - names.begin());
-        if (out.wall >= 0 && out.collider >= 0)
-          return bad(fmt::format("'{}' is a wall and a collider: rename the collider", *name));
+        const bool is_collider = std::find(names.begin(), names.end(), *name) != names.end();
+        if (wall && is_collider) return bad(fmt::format("'{}' is a wall and a collider: rename the collider", *name));
         // The walls of a periodic axis are open ones inside, but no reader wrote so.
-        if (out.wall >= 0 && scene.space.periodic[std::size_t(out.wall / 2)])
-          return bad(fmt::format("'{}' is on the periodic axis {}: there is no wall", *name, "xyz"[out.wall / 2]));
-        if (out.wall >= 0 && scene.space.walls[std::size_t(out.wall)].type == WallType::open)
+        if (wall && scene.space.periodic[index(*wall) / 2])
+          return bad(fmt::format("'{}' is on the periodic axis {}: there is no wall", *name, "xyz"[index(*wall) / 2]));
+        if (wall && scene.space.walls[index(*wall)].type == WallType::open)
           return bad(fmt::format("the wall '{}' is open: nothing is there to be pushed", *name));
-        if (out.wall >= 0 || out.collider >= 0) return;
-        names.insert(names.end(), wall_names.begin(), wall_names.end());
+        if (wall || is_collider) return;
+        names.insert(names.end(), side_names.begin(), side_names.end());
         names.insert(names.end(), {"floor", "ceiling"});
         bad(fmt::format("no wall or collider '{}'{}", *name, suggest(*name, names)));
       },
@@ -198,7 +189,7 @@ Schema<ForceProbe> keys_of(const ForceProbe*, const SceneDescription& scene) {
 }
 
 constexpr std::string_view help_of(const ExtentProbe*) { return "From where to where matter reaches along an axis."; }
-Schema<ExtentProbe> keys_of(const ExtentProbe*, const SceneDescription& scene) {
+Schema<ExtentProbe> keys_of(const ExtentProbe*, const model::Scene& scene) {
   return {choice("axis", &ExtentProbe::axis, {"x", "y", "z"}).must().says("Along which axis."),
           reference("material", &ExtentProbe::material, "material", scene.materials)
               .says("Of which material; absent: all matter.")};
@@ -207,7 +198,7 @@ Schema<ExtentProbe> keys_of(const ExtentProbe*, const SceneDescription& scene) {
 constexpr std::string_view help_of(const PointProbe*) {
   return "A material point of a body: the one that starts at `at`.";
 }
-Schema<PointProbe> keys_of(const PointProbe*, const SceneDescription& scene) {
+Schema<PointProbe> keys_of(const PointProbe*, const model::Scene& scene) {
   return {reference("body", &PointProbe::body, "body", scene.bodies).must().says("Of which body."),
           place("at", &PointProbe::at, scene)};
 }
@@ -215,30 +206,29 @@ Schema<PointProbe> keys_of(const PointProbe*, const SceneDescription& scene) {
 constexpr std::string_view help_of(const PoseProbe*) {
   return "Where a collider or rigid body stands, and how it moves.";
 }
-Schema<PoseProbe> keys_of(const PoseProbe*, const SceneDescription& scene) {
-  return {reference("on", &PoseProbe::collider, "collider or rigid body", scene.colliders).must().says("Of what.")};
+Schema<PoseProbe> keys_of(const PoseProbe*, const model::Scene& scene) {
+  return {reference("on", &PoseProbe::on, "collider or rigid body", scene.colliders).must().says("Of what.")};
 }
 
 constexpr std::string_view help_of(const InflowProbe*) { return "What comes in by an emitter, or goes out by a sink."; }
-Schema<InflowProbe> keys_of(const InflowProbe*, const SceneDescription& scene) {
+Schema<InflowProbe> keys_of(const InflowProbe*, const model::Scene& scene) {
   return {Field<InflowProbe>{
       "on",
       [&scene](Reading& in, const YamlNode& n, const std::string& path, InflowProbe& out) {
         const auto name = read_text(in.problems, n, path);
         if (!name) return;
         out.on = *name;
-        const auto index_in = [&](const std::vector<std::string>& names) {
-          const auto found = std::find(names.begin(), names.end(), *name);
-          return found == names.end() ? -1 : int(found - names.begin());
+        const auto is_in = [&](const std::vector<std::string>& names) {
+          return std::find(names.begin(), names.end(), *name) != names.end();
         };
         std::vector<std::string> names = names_of(scene.emitters);
         std::vector<std::string> sinks = names_of(scene.sinks);
         for (const Collider& c : scene.colliders)
           if (c.deletes) sinks.push_back(c.name);
-        out.emitter = index_in(names), out.sink = index_in(sinks);
-        if (out.emitter >= 0 && out.sink >= 0)
+        const bool emits = is_in(names), takes = is_in(sinks);
+        if (emits && takes)
           in.problems.error(n.at, fmt::format("{}: '{}' is an emitter and a sink: rename one", path, *name));
-        if (out.emitter >= 0 || out.sink >= 0) return;
+        if (emits || takes) return;
         names.insert(names.end(), sinks.begin(), sinks.end());
         in.problems.error(n.at, fmt::format("{}: no emitter, sink or collider that deletes '{}'{}", path, *name,
                                             suggest(*name, names)));
@@ -250,7 +240,7 @@ Schema<InflowProbe> keys_of(const InflowProbe*, const SceneDescription& scene) {
 }
 
 template <class P>
-Schema<P> keys_of(const SceneDescription& scene) {
+Schema<P> keys_of(const model::Scene& scene) {
   return keys_of(static_cast<const P*>(nullptr), scene);
 }
 
@@ -261,7 +251,7 @@ std::vector<std::string> probe_types() {
 }
 
 /// Each key with the types that have it, in words: "pressure and velocity".
-std::map<std::string, std::string> owners(const SceneDescription& scene) {
+std::map<std::string, std::string> owners(const model::Scene& scene) {
   std::map<std::string, std::vector<std::string>> types;
   for_each_type([&]<class P>() {
     for (const Field<P>& f : keys_of<P>(scene)) types[f.key].emplace_back(P::type);
@@ -284,7 +274,7 @@ const Schema<Probe>& common_keys() {
 
 /// The keys of type P in `node`, which has `rate` and `type` too.
 template <class P>
-void read_form(Reading& in, YamlNode node, const std::string& path, const SceneDescription& scene, Probe& out) {
+void read_form(Reading& in, YamlNode node, const std::string& path, const model::Scene& scene, Probe& out) {
   const Schema<P> schema = keys_of<P>(scene);
   const auto all = owners(scene);
   std::erase_if(node.entries, [&](const Entry& e) {
@@ -299,12 +289,11 @@ void read_form(Reading& in, YamlNode node, const std::string& path, const SceneD
 
 }  // namespace
 
-void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_probes(Reading& in, const YamlNode& node, model::Scene& out) {
   const std::vector<std::string> types = probe_types();
   read_named(in, node, "probes", [&](const Entry& e, const std::string& path) {
     Probe probe;
     probe.name = e.key;
-    probe.mark = mark_of(e.at);
     if (!expect_map(in.problems, e.value, path)) return;
     const YamlNode* type = e.value.find("type");
     if (!type) return in.problems.error(e.value.at, fmt::format("missing key '{}.type'", path));
@@ -320,7 +309,7 @@ void read_probes(Reading& in, const YamlNode& node, SceneDescription& out) {
 
 ValueInfo probes_info() {
   return names_info(map_of([] {
-    static const SceneDescription none;
+    static const model::Scene none;
     MapInfo info{keys_info(common_keys())};
     for_each_type([&]<class P>() {
       info.types.push_back(
@@ -330,7 +319,7 @@ ValueInfo probes_info() {
   }));
 }
 
-YamlNode write_probes(const SceneDescription& scene) {
+YamlNode write_probes(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Probe& p : scene.probes) {
     YamlNode one = YamlNode::map();

@@ -105,7 +105,7 @@ const Schema<BodyDraft>& body_schema() {
 
 }  // namespace
 
-void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
+void read_rigid(Reading& in, const YamlNode& node, model::Scene& out) {
   read_named(in, node, "rigid", [&](const Entry& e, const std::string& path) {
     const auto taken = [&](const auto& list) {
       return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == e.key; });
@@ -119,7 +119,6 @@ void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out) {
       in.problems.error(e.value.at, fmt::format("{}: give either a density or a mass", path));
     Collider& c = out.colliders.emplace_back(std::move(draft.collider));
     c.name = e.key;
-    c.mark = mark_of(e.at);
     c.type = draft.type;
     c.friction = draft.friction;
     if (draft.position) c.shape.center = draft.position;
@@ -137,7 +136,7 @@ ValueInfo rigid_info() {
   }));
 }
 
-YamlNode write_rigid(const SceneDescription& scene) {
+YamlNode write_rigid(const model::Scene& scene) {
   YamlNode all = YamlNode::map();
   for (const Collider& c : scene.colliders)
     if (c.rigid) all.put(c.name, write_map(BodyDraft{c, *c.rigid, c.type, c.friction, std::nullopt}, body_schema()));

@@ -8,7 +8,7 @@
 namespace dreampm::scene {
 namespace {
 
-using Scene = SceneDescription;
+using Scene = model::Scene;
 
 Field<Scene> space() {
   return Field<Scene>{

@@ -1,10 +1,39 @@
 // The tables of a scene's sections. What stands in more than one file of this folder is declared
 // here.
 #pragma once
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/scene/fields.h"
 
 namespace dreampm::scene {
+
+// The structs of the model, which the tables are of.
+using model::Basin;
+using model::Body;
+using model::Camera;
+using model::Collider;
+using model::Cut;
+using model::Emitter;
+using model::Floor;
+using model::ForceField;
+using model::Light;
+using model::Look;
+using model::LookType;
+using model::Mark;
+using model::Material;
+using model::MeshSequence;
+using model::Motion;
+using model::Output;
+using model::Probe;
+using model::Render;
+using model::Rigid;
+using model::SceneProps;
+using model::Sink;
+using model::Space;
+using model::Sun;
+using model::Surface;
+using model::SurfaceFormat;
+using model::Time;
+using model::Video;
 
 const std::vector<std::string>& wall_type_words();  ///< by WallType
 
@@ -16,8 +45,7 @@ const Schema<Render>& render_schema();
 const Schema<Video>& video_schema();
 const Schema<Material>& material_schema();
 
-/// Checks min < max and works out the walls' planes; periodic axes have none, and become whole
-/// blocks long.
+/// Checks min < max; periodic axes have no walls.
 void finish_space(Reading& in, const YamlNode& node, Space& space);
 
 /// rigid: of a body whose `position` stands beside the shape.
@@ -34,9 +62,9 @@ ValueInfo shape_info();
 /// Says where the `max` of a map is not above its `min`, both of which it has.
 void check_min_max(Reading& in, const YamlNode& map, const std::string& path, const Box3d& box);
 
-/// The name of one of `materials`, of which a member holds the number.
+/// The name of one of `materials`.
 template <class T>
-Field<T> material_name(const std::vector<Material>& materials, int T::* member) {
+Field<T> material_name(const std::vector<Material>& materials, std::string T::* member) {
   return Field<T>{"material",
                   [&materials, member](Reading& in, const YamlNode& n, const std::string& path, T& out) {
                     std::vector<std::string> names;
@@ -48,11 +76,9 @@ Field<T> material_name(const std::vector<Material>& materials, int T::* member) 
                       in.problems.error(n.at,
                                         fmt::format("{}: no material '{}'{}", path, *name, suggest(*name, names)));
                     else
-                      out.*member = int(found - names.begin());
+                      out.*member = *name;
                   },
-                  [&materials, member](const T& t, const std::string& k, YamlNode& map) {
-                    map.put(k, write_text(materials[std::size_t(t.*member)].name));
-                  }}
+                  [member](const T& t, const std::string& k, YamlNode& map) { map.put(k, write_text(t.*member)); }}
       .must()
       .takes(text_info("the name of a material"));
 }
@@ -92,37 +118,37 @@ Field<T> motion_field() {
 
 /// The keys of a material that say its transfer: `transfer`, and the parameters of every type.
 const std::vector<std::string>& transfer_keys();
-void read_transfer(Reading& in, const YamlNode& material, const std::string& path, AnyTransfer& out);
-void write_transfer(const AnyTransfer& transfer, YamlNode& material);
+void read_transfer(Reading& in, const YamlNode& material, const std::string& path, Material& out);
+void write_transfer(const Material& from, YamlNode& material);
 std::vector<KeyInfo> transfer_info();
 
 /// gravity: [x, y, z], or {keys: [{t, value}, ...]}
-Field<SceneDescription> gravity();
+Field<model::Scene> gravity();
 
 /// These read into the lists of the scene; bodies need the materials to be read first.
-void read_materials(Reading& in, const YamlNode& node, SceneDescription& out);
-void read_bodies(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_materials(Reading& in, const YamlNode& node, model::Scene& out);
+void read_bodies(Reading& in, const YamlNode& node, model::Scene& out);
 /// Checks the names in the `cut` of bodies, once there are colliders and rigid bodies.
-void check_cuts(Reading& in, const YamlNode* bodies, const SceneDescription& scene);
-void read_colliders(Reading& in, const YamlNode& node, SceneDescription& out);
-void read_emitters(Reading& in, const YamlNode& node, SceneDescription& out);
-void read_sinks(Reading& in, const YamlNode& node, SceneDescription& out);
+void check_cuts(Reading& in, const YamlNode* bodies, const model::Scene& scene);
+void read_colliders(Reading& in, const YamlNode& node, model::Scene& out);
+void read_emitters(Reading& in, const YamlNode& node, model::Scene& out);
+void read_sinks(Reading& in, const YamlNode& node, model::Scene& out);
 /// Rigid bodies: colliders of the scene.
-void read_rigid(Reading& in, const YamlNode& node, SceneDescription& out);
-YamlNode write_rigid(const SceneDescription& scene);
+void read_rigid(Reading& in, const YamlNode& node, model::Scene& out);
+YamlNode write_rigid(const model::Scene& scene);
 /// What holds matter and moves it: colliders of the scene that are not drawn.
-void read_pins(Reading& in, const YamlNode& node, SceneDescription& out);
-YamlNode write_pins(const SceneDescription& scene);
-void read_fields(Reading& in, const YamlNode& node, SceneDescription& out);
+void read_pins(Reading& in, const YamlNode& node, model::Scene& out);
+YamlNode write_pins(const model::Scene& scene);
+void read_fields(Reading& in, const YamlNode& node, model::Scene& out);
 /// Needs everything that a probe can name: space, materials, bodies, colliders.
-void read_probes(Reading& in, const YamlNode& node, SceneDescription& out);
-YamlNode write_materials(const SceneDescription& scene);
-YamlNode write_bodies(const SceneDescription& scene);
-YamlNode write_colliders(const SceneDescription& scene);
-YamlNode write_emitters(const SceneDescription& scene);
-YamlNode write_sinks(const SceneDescription& scene);
-YamlNode write_fields(const SceneDescription& scene);
-YamlNode write_probes(const SceneDescription& scene);
+void read_probes(Reading& in, const YamlNode& node, model::Scene& out);
+YamlNode write_materials(const model::Scene& scene);
+YamlNode write_bodies(const model::Scene& scene);
+YamlNode write_colliders(const model::Scene& scene);
+YamlNode write_emitters(const model::Scene& scene);
+YamlNode write_sinks(const model::Scene& scene);
+YamlNode write_fields(const model::Scene& scene);
+YamlNode write_probes(const model::Scene& scene);
 
 /// What these sections take.
 ValueInfo materials_info();
@@ -135,30 +161,38 @@ ValueInfo pins_info();
 ValueInfo fields_info();
 ValueInfo probes_info();
 
+/// Over the look that holds without it.
+void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out);
 /// Gives every material and collider its look: the one in the map `render` (or null), else
 /// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks
 /// the names in its `cut`.
-void read_looks(Reading& in, const YamlNode* render, SceneDescription& scene);
+void read_looks(Reading& in, const YamlNode* render, model::Scene& scene);
 
 /// The whole scene, without dreampm and variants.
-const Schema<SceneDescription>& scene_schema();
+const Schema<model::Scene>& scene_schema();
+/// Reads a whole scene and completes it: what follows from the rest, as looks and the folder.
+model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& variant);
+
+const Schema<Wall>& wall_schema();
+const Schema<Collider>& collider_schema();
+/// Names are looked up in `materials`.
+Schema<Emitter> emitter_schema(const std::vector<Material>& materials);
+const Schema<Look>& look_schema();
 
 /// Names end up in paths, file names and --set.
 bool good_name(std::string_view name);
 inline constexpr const char* good_name_rule = "letters, digits, - and _, beginning with a letter or digit, at most 64";
 
-inline Mark mark_of(const Place& at) { return {at.line, at.column}; }
-/// Adds one to a list, with its name and its place in the file.
+/// Adds one to a list, with its name.
 template <class T>
 T& add_named(std::vector<T>& list, const Entry& e) {
   T& one = list.emplace_back();
   one.name = e.key;
-  one.mark = mark_of(e.at);
   return one;
 }
 
-/// Calls `each` for every entry of a map of names; reports names that cannot be used in paths and
-/// file names.
+/// Calls `each` for every entry of a map of names, and notes their places; reports names that
+/// cannot be used in paths and file names.
 void read_named(Reading& in, const YamlNode& node, const std::string& path,
                 const std::function<void(const Entry&, const std::string& path)>& each);
 

@@ -11,16 +11,21 @@ namespace {
 
 struct WallGroup {
   const char* key;
-  std::vector<int> walls;
+  std::vector<int> walls;  ///< as Side numbers them
 };
 /// From general to special: a later one wins, key by key.
 const std::vector<WallGroup>& wall_groups() {
   static const std::vector<WallGroup> groups{
-      {"all", {0, 1, 2, 3, 4, 5}}, {"sides", {x_min, x_max, z_min, z_max}},
-      {"floor", {y_min}},          {"ceiling", {y_max}},
-      {"x_min", {x_min}},          {"x_max", {x_max}},
-      {"y_min", {y_min}},          {"y_max", {y_max}},
-      {"z_min", {z_min}},          {"z_max", {z_max}},
+      {"all", {0, 1, 2, 3, 4, 5}},
+      {"sides", {0, 1, 4, 5}},
+      {"floor", {2}},
+      {"ceiling", {3}},
+      {"x_min", {0}},
+      {"x_max", {1}},
+      {"y_min", {2}},
+      {"y_max", {3}},
+      {"z_min", {4}},
+      {"z_max", {5}},
   };
   return groups;
 }
@@ -40,6 +45,8 @@ Field<Wall> wall_type() {
   return f;
 }
 
+}  // namespace
+
 const Schema<Wall>& wall_schema() {
   static const Schema<Wall> schema{
       wall_type().says(
@@ -53,6 +60,8 @@ const Schema<Wall>& wall_schema() {
   };
   return schema;
 }
+
+namespace {
 
 void read_walls(Reading& in, const YamlNode& node, const std::string& path, Space& out) {
   Problems& problems = in.problems;
@@ -101,8 +110,8 @@ MapInfo walls_info() {
 
 void write_walls(const Space& space, const std::string& key, YamlNode& map) {
   YamlNode walls = YamlNode::map();
-  for (std::size_t i = 0; i < wall_names.size(); ++i)
-    if (!space.periodic[i / 2]) walls.put(wall_names[i], write_map(space.walls[i], wall_schema()));
+  for (std::size_t i = 0; i < side_names.size(); ++i)
+    if (!space.periodic[i / 2]) walls.put(std::string(side_names[i]), write_map(space.walls[i], wall_schema()));
   if (!walls.entries.empty()) map.put(key, std::move(walls));
 }
 
@@ -162,14 +171,14 @@ Field<Time> seconds() {
 }  // namespace
 
 const std::vector<std::string>& wall_type_words() {
-  static const std::vector<std::string> words{"separate", "slip", "stick", "open"};
+  static const std::vector<std::string> words{wall_type_names.begin(), wall_type_names.end()};
   return words;
 }
 
 const Schema<Space>& space_schema() {
   static const Schema<Space> schema{
       vector("min", &Space::min, any_number("m")).says("The low corner of the box that matter moves in."),
-      vector("max", &Space::asked_max, any_number("m"))
+      vector("max", &Space::max, any_number("m"))
           .must()
           .says("The high corner; each side is rounded up to whole cells from `min`."),
       number("spacing", &Space::spacing, above_zero("m"))
@@ -188,36 +197,31 @@ const Schema<Space>& space_schema() {
 }
 
 void finish_space(Reading& in, const YamlNode& node, Space& space) {
-  constexpr double block = 4;  // cells: the grid wraps by whole blocks
   const YamlNode* max = node.find("max");
   if (const YamlNode* walls = node.find("walls")) check_periodic_walls(in, *walls, space);
   for (std::size_t w = 0; w < space.walls.size(); ++w)
     if (space.periodic[w / 2]) space.walls[w] = {WallType::open};
   for (int i = 0; i < 3; ++i) {
-    const double length = space.asked_max[i] - space.min[i];
+    const double length = space.max[i] - space.min[i];
     if (!(length > 0)) {
       const Place& at = max && max->items.size() == 3 ? max->items[std::size_t(i)].at : node.at;
       in.problems.error(at, fmt::format("space.max[{0}] is {1}: must be above space.min[{0}], which is {2}", i,
-                                        space.asked_max[i], space.min[i]));
+                                        space.max[i], space.min[i]));
       continue;
     }
     constexpr double most = 1e9;  // a double is right to 1e-7 of a spacing there, as a particle's place in its cell
-    const double far = std::max(std::abs(space.min[i]), std::abs(space.asked_max[i])) / space.spacing;
+    const double far = std::max(std::abs(space.min[i]), std::abs(space.max[i])) / space.spacing;
     if (far > most)
       in.problems.error(node.at,
                         fmt::format("space reaches to {:.3g} spacings from the origin along {}: at most {:.3g} "
                                     "are possible, since numbers have no more digits",
                                     far, "xyz"[i], most));
-    // The slack keeps a length that is whole but for rounding from growing by a cell.
-    double cells = std::max(1.0, std::ceil(length / space.dx() - 1e-6));
-    if (space.periodic[std::size_t(i)]) cells = block * std::ceil(cells / block);
-    if (cells > 100000) {
+    if (const double cells = space.cells_along(i); cells > 100000) {
       const YamlNode* spacing = node.find("spacing");
       in.problems.error(spacing ? spacing->at : node.at,
                         fmt::format("space.spacing is {}: gives {:.0f} cells along {}, at most 100000 are possible",
                                     space.spacing, cells, "xyz"[i]));
     }
-    space.max[i] = space.min[i] + cells * space.dx();
   }
 }
 
@@ -226,7 +230,7 @@ Field<Time> fixed_dt() {
   Field<Time> f = number("dt", &Time::dt, {0, 1, true, false, "s"});
   f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {
     read(in, n, path, out);
-    out.dt_mark = {n.at.line, n.at.column};
+    in.marks[path] = {n.at.line, n.at.column};
   };
   return f;
 }

@@ -4,6 +4,7 @@
 
 #include <map>
 
+#include "dreampm/physics/transfers.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -24,7 +25,7 @@ const std::vector<std::string>& transfer_keys() {
   return keys;
 }
 
-void read_transfer(Reading& in, const YamlNode& material, const std::string& path, AnyTransfer& out) {
+void read_transfer(Reading& in, const YamlNode& material, const std::string& path, Material& out) {
   std::string chosen(Apic::name);
   if (const YamlNode* n = material.find("transfer")) {
     std::vector<std::string> names;
@@ -52,13 +53,14 @@ void read_transfer(Reading& in, const YamlNode& material, const std::string& pat
                                   path));
   Transfers::for_each([&]<class T>() {
     if (T::name != chosen) return;
-    T transfer;
-    for (const MemberParam<T>& p : T::params)
+    out.transfer = chosen;
+    for (const MemberParam<T>& p : T::params) {
+      std::optional<double> value;
+      if (is_given(T{}.*p.number)) value = T{}.*p.number;
       if (const YamlNode* n = material.find(p.key))
-        if (const auto v =
-                read_number(in.problems, *n, fmt::format("{}.{}", path, p.key), {p.min, p.max, p.above, false, p.unit}))
-          transfer.*p.number = *v;
-    out = transfer;
+        value = read_number(in.problems, *n, fmt::format("{}.{}", path, p.key), {p.min, p.max, p.above, false, p.unit});
+      if (value) out.transfer_values.set(p.key, *value);
+    }
   });
 }
 
@@ -87,15 +89,16 @@ std::vector<KeyInfo> transfer_info() {
   return keys;
 }
 
-void write_transfer(const AnyTransfer& any, YamlNode& material) {
-  if (std::holds_alternative<Apic>(any)) return;
+void write_transfer(const Material& from, YamlNode& material) {
+  if (from.transfer != Apic::name) material.put("transfer", YamlNode::scalar(from.transfer));
   std::visit(
       [&]<class T>(const T& transfer) {
-        material.put("transfer", YamlNode::scalar(std::string(T::name)));
         for (const MemberParam<T>& p : T::params)
           if (is_given(transfer.*p.number)) material.put(std::string(p.key), write_number(transfer.*p.number));
       },
-      any);
+      make_transfer(from.transfer, from.transfer_values));
+  for (const auto& [key, value] : from.transfer_values)  // the transfer has no such key: to be refused
+    if (!material.find(key)) material.put(key, write_number(value));
 }
 
 }  // namespace dreampm::scene

@@ -12,6 +12,8 @@
 #include "dreampm/import/point_cloud.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/level_set/level_set.h"
+#include "dreampm/physics/param.h"
+#include "dreampm/physics/transfers.h"
 #include "dreampm/setup/body_checks.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/filling.h"
@@ -32,11 +34,11 @@ namespace {
 std::uint64_t bytes_of_particle(bool colliders) { return colliders ? 416 : 400; }
 
 /// Refuses before sampling what could never be held.
-void check_fits_memory(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes,
+void check_fits_memory(const model::Body& body, const model::Scene& scene, const Meshes& meshes,
                        std::uint64_t available) {
-  const scene::Space& space = scene.space;
+  const model::Space& space = scene.space;
   const bool colliders = !scene.colliders.empty();
-  const Vec3d room = space.max - space.min, s = shape_bounds(body.shape, space.spacing, meshes).size();
+  const Vec3d room = space.end() - space.min, s = shape_bounds(body.shape, space.spacing, meshes).size();
   const double one = space.spacing * space.spacing * space.spacing;
   const double expected = std::min(room.x * room.y * room.z, s.x * s.y * s.z) / one;
   if (expected > 4e9 || static_cast<double>(memory_estimate(static_cast<std::size_t>(expected * 0.2), colliders)) >
@@ -49,11 +51,11 @@ void check_fits_memory(const scene::Body& body, const SceneDescription& scene, c
 }
 
 /// What is said of matter of a body that starts inside of a collider; an error if it is one.
-std::optional<std::string> within_collider(const SceneDescription& scene, std::size_t b, std::size_t c,
+std::optional<std::string> within_collider(const model::Scene& scene, std::size_t b, std::size_t c,
                                            const Overlap& overlap, const std::string& file, InitialState& out) {
   if (overlap.particles == 0) return std::nullopt;
-  const scene::Body& body = scene.bodies[b];
-  const scene::Collider& collider = scene.colliders[c];
+  const model::Body& body = scene.bodies[b];
+  const model::Collider& collider = scene.colliders[c];
   const double spacing = scene.space.spacing, dx = scene.space.dx();
   const double volume = static_cast<double>(overlap.particles) * spacing * spacing * spacing;
   const std::string lies =
@@ -67,24 +69,24 @@ std::optional<std::string> within_collider(const SceneDescription& scene, std::s
   const std::string remedy = fmt::format("cut it out of the body with cut: [{}]", fmt::join(cut, ", "));
   if (overlap.depth > shallow_overlap * dx)
     return fmt::format("{}: error: {}, up to {:.2g} m deep: {}, or say holds: true of the collider",
-                       place(file, body.mark), lies, overlap.depth, remedy);
+                       place(file, scene, body), lies, overlap.depth, remedy);
   out.warnings.push_back(
       fmt::format("{}, up to {:.2g} m deep, and will be pressed out of it: {}", lies, overlap.depth, remedy));
   return std::nullopt;
 }
 
 /// The speed of free fall [m/s] from the highest point to the lowest floor along `gravity`.
-double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std::vector<Filling>& fillings) {
+double fall_speed(const Vec3d& gravity, const model::Scene& scene, const std::vector<Filling>& fillings) {
   const double g = length(gravity);
   if (g == 0) return 0;
   const Vec3d up = gravity / -g;
   double top = -1e30, bottom = 1e30;
   for (const Filling& f : fillings)
     for (const Vec3d& p : f.points) top = std::max(top, dot(p, up));
+  const Vec3d end = scene.space.end();
   for (int corner = 0; corner < 8; ++corner) {
-    const Vec3d p{corner & 1 ? scene.space.max.x : scene.space.min.x,
-                  corner & 2 ? scene.space.max.y : scene.space.min.y,
-                  corner & 4 ? scene.space.max.z : scene.space.min.z};
+    const Vec3d p{corner & 1 ? end.x : scene.space.min.x, corner & 2 ? end.y : scene.space.min.y,
+                  corner & 4 ? end.z : scene.space.min.z};
     bottom = std::min(bottom, dot(p, up));
   }
   return std::sqrt(2 * g * std::max(0.0, top - bottom));
@@ -92,12 +94,13 @@ double fall_speed(const Vec3d& gravity, const SceneDescription& scene, const std
 
 /// The part of the scene that the field acts in, and what of it matter comes from. A field's own
 /// box may be entered at any side, and so may the space along periodic axes.
-Passage passage_of(const scene::ForceField& field, const scene::Space& space, const Box3d& matter) {
-  Passage p{matter, {space.min, space.max}, space.periodic};
+Passage passage_of(const model::ForceField& field, const model::Space& space, const Box3d& matter) {
+  const Vec3d end = space.end();
+  Passage p{matter, {space.min, end}, space.periodic};
   for (int a = 0; a < 3; ++a)
-    if (p.endless[static_cast<std::size_t>(a)]) p.from.min[a] = space.min[a], p.from.max[a] = space.max[a];
+    if (p.endless[static_cast<std::size_t>(a)]) p.from.min[a] = space.min[a], p.from.max[a] = end[a];
   if (field.box) {
-    p.within = {max(space.min, field.box->min), min(space.max, field.box->max)};
+    p.within = {max(space.min, field.box->min), min(end, field.box->max)};
     p.from = p.within;
   }
   return p;
@@ -105,9 +108,9 @@ Passage passage_of(const scene::ForceField& field, const scene::Space& space, co
 
 /// Energies add up: those of falling and of what fields give on the way. Matter has its own speed
 /// besides.
-ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling> fillings, const World<double>& world) {
+ExpectedSpeed expected_speed(const model::Scene& scene, std::vector<Filling> fillings, const World<double>& world) {
   double thrown = 0, head = 0;
-  for (const scene::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
+  for (const model::Body& b : scene.bodies) thrown = std::max(thrown, length(b.velocity));
   for (const Filling& f : fillings)
     for (const Vec3d& v : f.velocities) thrown = std::max(thrown, length(v));
   for (const Emitter& e : world.emitters) {
@@ -131,10 +134,10 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
     if (speed > 0) out.sources += fmt::format("{} {} {:.3g} m/s", out.sources.empty() ? ":" : ",", what, speed);
   };
   report("fall", fall);
-  for (const scene::ForceField& f : scene.fields) {
+  for (const model::ForceField& f : scene.fields) {
     const Passage passage = passage_of(f, scene.space, matter);
     const double gives =
-        passage.within.empty() ? 0 : std::visit([&](const auto& field) { return field.head(passage); }, f.field);
+        passage.within.empty() ? 0 : std::visit([&](const auto& field) { return field.head(passage); }, make_field(f));
     report("field " + f.name, std::sqrt(2 * gives));
     head += gives;
   }
@@ -149,8 +152,8 @@ ExpectedSpeed expected_speed(const SceneDescription& scene, std::vector<Filling>
   return out;
 }
 
-void derive_bulk_modulus(scene::Material& material, const ExpectedSpeed& expected, std::vector<std::string>& notes) {
-  if (!material.info->find("max_compression") || material.values.has("bulk_modulus")) return;
+void derive_bulk_modulus(model::Material& material, const ExpectedSpeed& expected, std::vector<std::string>& notes) {
+  if (!info_of(material).find("max_compression") || material.values.has("bulk_modulus")) return;
   const double density = material.values["density"];
   // Without fall or speed a slow sound still has to hold the liquid together.
   const double c = std::max(expected.speed, 0.1) / std::sqrt(material.values["max_compression"]);
@@ -164,8 +167,8 @@ void derive_bulk_modulus(scene::Material& material, const ExpectedSpeed& expecte
 /// which laws know as 300 dx/c, with c = 10 v_ref. One that is much stiffer would be repacked at
 /// the pace of its sound, and be thrown apart by an energy that no fall has: the pace of c = 20
 /// v_ref is the most. Nothing is changed where no speed is known beforehand.
-void limit_relaxation(scene::Material& material, double v_ref, std::vector<std::string>& notes) {
-  if (!material.info->find("relaxation") || !material.values.has("bulk_modulus") || !(v_ref > 0)) return;
+void limit_relaxation(model::Material& material, double v_ref, std::vector<std::string>& notes) {
+  if (!info_of(material).find("relaxation") || !material.values.has("bulk_modulus") || !(v_ref > 0)) return;
   const double c = std::sqrt(material.values["bulk_modulus"] / material.values["density"]), most = 20 * v_ref;
   const double given = material.values["relaxation"];
   if (c <= most || given == 0) return;
@@ -181,7 +184,7 @@ std::string too_much(std::size_t particles, std::uint64_t bytes, std::uint64_t a
 }
 
 /// What the scene's start says; nothing without one.
-std::optional<StartInfo> start_of(const SceneDescription& scene, const std::string& file,
+std::optional<StartInfo> start_of(const model::Scene& scene, const std::string& file,
                                   std::vector<std::string>& errors) {
   if (scene.start.empty()) return std::nullopt;
   try {
@@ -211,9 +214,9 @@ std::uint64_t memory_estimate(std::size_t particles, bool colliders) {
   return bytes_of_particle(colliders) * particles + (64ull << 20);
 }
 
-InitialState assemble(const SceneDescription& scene, const std::string& file, std::span<const Collider> standing) {
+InitialState assemble(const model::Scene& scene, const std::string& file, std::span<const Collider> standing) {
   InitialState out;
-  const scene::Space& space = scene.space;
+  const model::Space& space = scene.space;
   const double spacing = space.spacing;
   const std::uint64_t available = available_memory_bytes();
   const Meshes files(Meshes::Say::keep);
@@ -227,7 +230,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     for (const auto& [material, count] : started->particles) total += count;
   if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); total > 0 && bytes > available)
     fail_input("{}: error: {}", file, too_much(total, bytes, available));
-  for (const scene::Body& body : scene.bodies) {
+  for (const model::Body& body : scene.bodies) {
     Hash64 name;
     name.add(std::string_view(body.name));
     const Sampling sampling{body.pattern, scene.seed ^ name.value()};
@@ -235,30 +238,36 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       if (!std::holds_alternative<PointsShape>(body.shape.form)) check_fits_memory(body, scene, files, available);
       fillings.push_back(fill(body, scene, files, sampling));
     } catch (const InputError& e) {
-      errors.push_back(fmt::format("{}: error: body {}: {}", place(file, body.mark), body.name, e.what()));
+      errors.push_back(fmt::format("{}: error: body {}: {}", place(file, scene, body), body.name, e.what()));
       continue;
     }
     const auto& [region, points, velocities, cut] = fillings.back();
     if (points.empty())
-      errors.push_back(
-          fmt::format("{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller{}",
-                      place(file, body.mark), body.name, spacing, finer_spacing(body.shape, spacing, sampling, files)));
+      errors.push_back(fmt::format(
+          "{}: error: body {} holds no particle at spacing {} m; make it larger or space.spacing smaller{}",
+          place(file, scene, body), body.name, spacing, finer_spacing(body.shape, spacing, sampling, files)));
     else if (region)
       volumes.add("body " + body.name, body.shape, *region, sampling, points.size());
     else
       for (std::string& w : cloud_warnings(points, spacing, "body " + body.name)) out.warnings.push_back(std::move(w));
     if (region)
       for (std::string& n : short_of_walls(body, region->bounds(), space)) out.notes.push_back(std::move(n));
-    for (std::string& e : outside_walls(body, points, space, file)) errors.push_back(std::move(e));
-    if (auto e = beyond_open_sides(body, points, space, file, out.warnings)) errors.push_back(std::move(*e));
+    for (std::string& e : outside_walls(body, points, scene, file)) errors.push_back(std::move(e));
+    if (auto e = beyond_open_sides(body, points, scene, file, out.warnings)) errors.push_back(std::move(*e));
     total += points.size();
     if (const std::uint64_t bytes = memory_estimate(total, !scene.colliders.empty()); bytes > available)
       fail_input("{}: error: {}", file, too_much(total, bytes, available));
   }
-  if (scene.colliders.size() > scene::most_colliders)
+  if (scene.colliders.size() > model::most_colliders)
     fail_input("{}: error: {} colliders, rigid bodies and pins; at most {}", file, scene.colliders.size(),
-               scene::most_colliders);
-  for (const scene::Collider& c : scene.colliders) try {
+               model::most_colliders);
+  for (const model::Collider& c : scene.colliders) try {
+      const auto there =
+          std::find_if(standing.begin(), standing.end(), [&](const Collider& s) { return s.name == c.name; });
+      if (there != standing.end()) {
+        out.world.colliders.push_back(*there);
+        continue;
+      }
       out.world.colliders.push_back({c.name, collider_region(c, space, files), c.type, c.friction, c.sticky, c.holds});
       out.world.colliders.back().path = motion_path(c.motion, c.shape, space.spacing, files);
       out.world.colliders.back().changing = mesh_sequence(c, space);
@@ -266,7 +275,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       out.world.colliders.back().follow(0, 1 / scene.time.fps);
       out.world.colliders.back().surface_pose = out.world.colliders.back().pose;
     } catch (const InputError& e) {
-      errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, c.mark), c.name, e.what()));
+      errors.push_back(fmt::format("{}: error: collider {}: {}", place(file, scene, c), c.name, e.what()));
     }
   const auto refuse = [&] {
     if (errors.empty()) return;
@@ -274,23 +283,16 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
   };
   refuse();
-  // By name: edits may have brought them in another order.
-  for (const Collider& now : standing)
-    for (Collider& to : out.world.colliders) {
-      if (to.name != now.name) continue;
-      to.pose = now.pose, to.twist = now.twist, to.surface_pose = now.surface_pose;
-      to.time = now.time, to.surface_time = now.surface_time;
-      to.take_shape();
-    }
   for (const auto& lines : {files.warnings(), volumes.warnings()})
     out.warnings.insert(out.warnings.end(), lines.begin(), lines.end());
-  for (auto& note : notes_on(scene, file, files)) out.notes.push_back(std::move(note));
+  // What is said of colliders was said when they came in.
+  if (standing.empty())
+    for (auto& note : notes_on(scene, file, files)) out.notes.push_back(std::move(note));
 
   World<double>& w = out.world;
   w.dx = space.dx();
   w.origin = space.min;
-  for (std::size_t s = 0; s < 6; ++s)
-    w.walls[s] = {space.walls[s].type, space.walls[s].friction, space.walls[s].skin_friction};
+  w.walls = space.walls;
   w.periodic = space.periodic;
   w.set_domain(space.cells());
   w.gravity = scene.gravity;
@@ -302,7 +304,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   w.settings.dt_max = scene.time.dt_max.value_or(1e30);
   w.settings.damping = scene.time.damping;
   w.settings.surface_contact = scene.time.surface_contact;
-  for (const scene::ForceField& f : scene.fields) w.fields.push_back(f);
+  for (const model::ForceField& f : scene.fields) w.fields.push_back({f.name, make_field(f), f.box});
   add_inflow(w, scene, files, file, errors);
   // Of colliders that stand already only matter comes.
   if (standing.empty()) add_rigid(w, scene, file, errors);
@@ -328,9 +330,10 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
       if (auto error = within_collider(scene, b, c, overlap, file, out)) errors.push_back(std::move(*error));
     }
   refuse();
-  for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
+  if (standing.empty())
+    for (std::string& line : thin_collider_warnings(w, space)) out.warnings.push_back(std::move(line));
   if (std::string line = projection_warning(scene, file); !line.empty()) out.warnings.push_back(std::move(line));
-  for (const scene::Material& material : scene.materials) {
+  for (const model::Material& material : scene.materials) {
     ParticleSet<double>& set = w.sets.emplace_back();
     set.rest_volume = spacing * spacing * spacing;
     use_material(set, material, w, out.expected, out.notes);
@@ -341,7 +344,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
   out.seeds.resize(w.sets.size());
   std::uint32_t id = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const scene::Body& body = scene.bodies[b];
+    const model::Body& body = scene.bodies[b];
     const auto& points = fillings[b].points;
     Vec3d middle{};
     for (const Vec3d& p : points) middle += p;
@@ -349,7 +352,7 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
     const Vec3d& o = body.spin;
     const Mat3d gradient{{0, -o.z, o.y, o.z, 0, -o.x, -o.y, o.x, 0}};
     out.bodies.push_back({body.name, id, static_cast<std::uint32_t>(points.size()), body.color});
-    auto& set = out.seeds[static_cast<std::size_t>(body.material)];
+    auto& set = out.seeds[index_of(scene.materials, body.material)];
     const std::vector<Vec3d>& own = fillings[b].velocities;
     for (std::size_t p = 0; p < points.size(); ++p)
       set.push_back(
@@ -360,11 +363,11 @@ InitialState assemble(const SceneDescription& scene, const std::string& file, st
 }
 
 template <class R>
-void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
+void use_material(ParticleSet<R>& set, model::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes) {
   // A projection has no use for stiffness.
   set.carries_motion = world.settings.solver == SolverKind::projection;
-  const bool projected = set.carries_motion && material.info->liquid;
+  const bool projected = set.carries_motion && info_of(material).liquid;
   if (projected && material.values.has("bulk_modulus"))
     notes.push_back(fmt::format("{}: bulk_modulus has no effect: a projection keeps volume as it is", material.name));
   std::vector<std::string> unused;
@@ -372,18 +375,19 @@ void use_material(ParticleSet<R>& set, scene::Material material, const World<R>&
   derive_bulk_modulus(material, expected, of_stiffness);
   limit_relaxation(material, expected.speed, of_stiffness);
   set.name = material.name;
-  set.material = std::string(material.info->name);
-  set.liquid = material.info->liquid;
+  set.material = material.type;
+  set.liquid = info_of(material).liquid;
   set.mass = material.values["density"] * set.rest_volume;
   set.values = material.values;
   double gravity = length(world.gravity);
   for (const Key<Vec3d>& k : world.gravity_keys) gravity = std::max(gravity, length(k.value));
-  const CellTimes cell{world.dx / facts_of(*material.info, material.values).sound_speed,
+  const CellTimes cell{world.dx / facts_of(info_of(material), material.values).sound_speed,
                        set.liquid && gravity > 0 ? std::sqrt(world.dx / gravity) : 0};
-  set.transfer = std::visit([&](const auto& t) { return t.rule(cell); }, material.transfer);
+  set.transfer = std::visit([&](const auto& t) { return t.rule(cell); },
+                            make_transfer(material.transfer, material.transfer_values));
 }
 #define DM_INSTANTIATE(R)                                                                             \
-  template void use_material(ParticleSet<R>&, scene::Material, const World<R>&, const ExpectedSpeed&, \
+  template void use_material(ParticleSet<R>&, model::Material, const World<R>&, const ExpectedSpeed&, \
                              std::vector<std::string>&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
@@ -37,14 +37,15 @@ struct InitialState {
 /// Builds the start of a run. `file` names the scene in messages. Throws InputError for a body
 /// outside the walls or within a collider that does not hold it, one without particles, more matter
 /// than memory holds; warns of overlapping bodies with their common volume, and of colliders that
-/// are too thin. `standing`: colliders of the scene as they stand now, if not as it gives them.
-InitialState assemble(const SceneDescription& scene, const std::string& file, std::span<const Collider> standing = {});
+/// are too thin. `standing`: colliders of the scene as they stand now, if not as it gives them;
+/// their files are not read.
+InitialState assemble(const model::Scene& scene, const std::string& file, std::span<const Collider> standing = {});
 
 /// Makes `set` of that material: what it derives from the expected speed (bulk modulus, relaxation)
 /// goes to its values and to `notes`; cells and gravity are those of `world`. Particles are left
 /// alone.
 template <class R>
-void use_material(ParticleSet<R>& set, scene::Material material, const World<R>& world, const ExpectedSpeed& expected,
+void use_material(ParticleSet<R>& set, model::Material material, const World<R>& world, const ExpectedSpeed& expected,
                   std::vector<std::string>& notes);
 
 /// The same empty world in float or double.

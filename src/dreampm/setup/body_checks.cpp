@@ -120,39 +120,42 @@ std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sa
                               : std::string("use a spacing of a quarter of that or less"));
 }
 
-std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
-                                       const scene::Space& space, const std::string& file) {
+std::vector<std::string> outside_walls(const model::Body& body, const std::vector<Vec3d>& points,
+                                       const model::Scene& scene, const std::string& file) {
+  const model::Space& space = scene.space;
   std::vector<std::string> errors;
   // Points exactly on a wall are of a body that lies flush against it.
   const double slack = 1e-6 * space.dx();
+  const Vec3d end = space.end();
   for (int axis = 0; axis < 3; ++axis) {
     if (!space.periodic[static_cast<std::size_t>(axis)]) continue;
     double low = 1e30, high = -1e30;
     for (const Vec3d& p : points) low = std::min(low, p[axis]), high = std::max(high, p[axis]);
-    const double period = space.max[axis] - space.min[axis];
+    const double period = end[axis] - space.min[axis];
     if (high - low > period + slack)
       errors.push_back(fmt::format(
           "{}: error: body {} is {:.4g} m long along {}, more than the period of {:.4g} m: it would overlap itself",
-          place(file, body.mark), body.name, high - low, "xyz"[axis], period));
+          place(file, scene, body), body.name, high - low, "xyz"[axis], period));
   }
   for (int side = 0; side < 6; ++side) {
     if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
     const int axis = side / 2;
     double beyond = 0;
-    for (const Vec3d& p : points)
-      beyond = std::max(beyond, side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis]);
+    for (const Vec3d& p : points) beyond = std::max(beyond, side % 2 ? p[axis] - end[axis] : space.min[axis] - p[axis]);
     if (beyond > slack)
       errors.push_back(
           fmt::format("{}: error: body {} reaches {:.4g} m outside the wall {}; move it, or make space larger",
-                      place(file, body.mark), body.name, beyond, scene::wall_names[static_cast<std::size_t>(side)]));
+                      place(file, scene, body), body.name, beyond, side_names[static_cast<std::size_t>(side)]));
   }
   return errors;
 }
 
-std::optional<std::string> beyond_open_sides(const scene::Body& body, const std::vector<Vec3d>& points,
-                                             const scene::Space& space, const std::string& file,
+std::optional<std::string> beyond_open_sides(const model::Body& body, const std::vector<Vec3d>& points,
+                                             const model::Scene& scene, const std::string& file,
                                              std::vector<std::string>& warnings) {
+  const model::Space& space = scene.space;
   const double slack = 1e-6 * space.dx();
+  const Vec3d end = space.end();
   std::size_t lost = 0;
   std::array<std::size_t, 6> by_side{};
   for (const Vec3d& p : points) {
@@ -160,17 +163,17 @@ std::optional<std::string> beyond_open_sides(const scene::Body& body, const std:
     for (std::size_t side = 0; side < 6; ++side) {
       const int axis = static_cast<int>(side / 2);
       if (space.walls[side].type != WallType::open || space.periodic[side / 2]) continue;
-      const double beyond = side % 2 ? p[axis] - space.max[axis] : space.min[axis] - p[axis];
+      const double beyond = side % 2 ? p[axis] - end[axis] : space.min[axis] - p[axis];
       if (beyond > slack) out = true, ++by_side[side];
     }
     lost += out;
   }
   if (lost == 0) return std::nullopt;
   const auto most = static_cast<std::size_t>(std::max_element(by_side.begin(), by_side.end()) - by_side.begin());
-  const std::string where = fmt::format("beyond the open side {}", scene::wall_names[most]);
+  const std::string where = fmt::format("beyond the open side {}", side_names[most]);
   if (lost == points.size())
     return fmt::format("{}: error: body {} lies wholly {}, where matter is taken out: move it, or make space larger",
-                       place(file, body.mark), body.name, where);
+                       place(file, scene, body), body.name, where);
   warnings.push_back(
       fmt::format("{:.4g} of {:.4g} m^3 of body {} lie {}, and are taken out at once: move it, or make "
                   "space larger",
@@ -179,17 +182,18 @@ std::optional<std::string> beyond_open_sides(const scene::Body& body, const std:
   return std::nullopt;
 }
 
-std::vector<std::string> short_of_walls(const scene::Body& body, const Box3d& bounds, const scene::Space& space) {
+std::vector<std::string> short_of_walls(const model::Body& body, const Box3d& bounds, const model::Space& space) {
   std::vector<std::string> notes;
   const double slack = 1e-6 * space.dx();
+  const Vec3d end = space.end();
   for (int a = 0; a < 3; ++a) {
-    const double asked = space.asked_max[a], gap = space.max[a] - asked;
+    const double asked = space.max[a], gap = end[a] - asked;
     if (space.periodic[static_cast<std::size_t>(a)] || !(gap > slack) || std::abs(bounds.max[a] - asked) > slack)
       continue;
     notes.push_back(
         fmt::format("body {} ends {:.4g} m short of the wall {}_max: space.max asks for {:.10g} along {}, and the wall "
                     "stands at {:.10g}, at whole cells of {:.4g} m",
-                    body.name, gap, "xyz"[a], asked, "xyz"[a], space.max[a], space.dx()));
+                    body.name, gap, "xyz"[a], asked, "xyz"[a], end[a], space.dx()));
   }
   return notes;
 }

@@ -10,7 +10,7 @@
 #include "dreampm/geometry/region.h"
 #include "dreampm/geometry/sample.h"
 #include "dreampm/level_set/level_set.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
@@ -37,18 +37,18 @@ std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sa
 
 /// What is wrong with where a body's points lie, a line a closed wall; empty if nothing. `file`
 /// names the scene.
-std::vector<std::string> outside_walls(const scene::Body& body, const std::vector<Vec3d>& points,
-                                       const scene::Space& space, const std::string& file);
+std::vector<std::string> outside_walls(const model::Body& body, const std::vector<Vec3d>& points,
+                                       const model::Scene& scene, const std::string& file);
 
 /// What is said of matter that lies beyond open sides, where it is taken out at once: an error
 /// where no point is left, else a warning, with the volume, to `warnings`.
-std::optional<std::string> beyond_open_sides(const scene::Body& body, const std::vector<Vec3d>& points,
-                                             const scene::Space& space, const std::string& file,
+std::optional<std::string> beyond_open_sides(const model::Body& body, const std::vector<Vec3d>& points,
+                                             const model::Scene& scene, const std::string& file,
                                              std::vector<std::string>& warnings);
 
 /// A note for each wall that was rounded up away from a body which ends where `space.max` asks for
 /// it.
-std::vector<std::string> short_of_walls(const scene::Body& body, const Box3d& bounds, const scene::Space& space);
+std::vector<std::string> short_of_walls(const model::Body& body, const Box3d& bounds, const model::Space& space);
 
 /// Collects what bodies hold, and says which hold more or less than their shapes by more than 5 %;
 /// of lumps of less than 216 particles only what whole rows of them do not explain.

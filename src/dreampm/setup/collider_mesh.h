@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "dreampm/geometry/mesh.h"
-#include "dreampm/geometry/shape.h"
+#include "dreampm/shape.h"
 
 namespace dreampm {
 

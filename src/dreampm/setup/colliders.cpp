@@ -15,7 +15,7 @@ namespace {
 
 /// What would make the voxels of a shell a third of `width` [m]. They are a third of its thickness,
 /// or of a cell where that is less.
-std::string coarser(double width, double thickness, const scene::Space& space) {
+std::string coarser(double width, double thickness, const model::Space& space) {
   if (width <= space.dx()) return fmt::format("a thickness of {:.3g} m would do", width);
   return fmt::format("a space.spacing of {:.3g} m{} would do", space.spacing * width / space.dx(),
                      width > thickness ? fmt::format(" and a thickness of {:.3g} m", width) : "");
@@ -23,7 +23,7 @@ std::string coarser(double width, double thickness, const scene::Space& space) {
 
 }  // namespace
 
-std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
+std::shared_ptr<const Region> collider_region(const model::Collider& collider, const model::Space& space,
                                               const Meshes& meshes) {
   if (!collider.thickness) try {
       return collider.voxel ? make_region(collider.shape, *collider.voxel, meshes.regions(1.5 * space.dx()))
@@ -43,17 +43,17 @@ std::shared_ptr<const Region> collider_region(const scene::Collider& collider, c
   }
 }
 
-std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space) {
+std::shared_ptr<const MeshSequence> mesh_sequence(const model::Collider& collider, const model::Space& space) {
   if (!collider.sequence) return nullptr;
   const auto& [files, fps, scale] = *collider.sequence;
   return std::make_shared<const MeshSequence>(files, fps, scale, collider.voxel.value_or(space.spacing),
                                               1.5 * space.dx());
 }
 
-std::shared_ptr<const MotionPath> motion_path(const std::optional<scene::Motion>& given, const Shape& shape,
+std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>& given, const Shape& shape,
                                               double spacing, const Meshes& meshes) {
   if (!given) return nullptr;
-  const scene::Motion& motion = *given;
+  const model::Motion& motion = *given;
   Vec3d center{};
   if (motion.about) {
     center = *motion.about;

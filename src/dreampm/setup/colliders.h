@@ -8,7 +8,7 @@
 
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/level_set/mesh_sequence.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/solver/solids_in_the_way.h"
 #include "dreampm/state/world.h"
 
@@ -16,15 +16,15 @@ namespace dreampm {
 
 /// What a collider takes of space: the inside of its shape, or the shell about its surface if it
 /// has a thickness.
-std::shared_ptr<const Region> collider_region(const scene::Collider& collider, const scene::Space& space,
+std::shared_ptr<const Region> collider_region(const model::Collider& collider, const model::Space& space,
                                               const Meshes& meshes);
 
 /// Of a collider that is a sequence of meshes; else null.
-std::shared_ptr<const MeshSequence> mesh_sequence(const scene::Collider& collider, const scene::Space& space);
+std::shared_ptr<const MeshSequence> mesh_sequence(const model::Collider& collider, const model::Space& space);
 
 /// The motion that the scene gives a shape; null of one that stands. Without `about` the middle of
 /// its bounds is what it turns about: `spacing` [m] is for meshes.
-std::shared_ptr<const MotionPath> motion_path(const std::optional<scene::Motion>& given, const Shape& shape,
+std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>& given, const Shape& shape,
                                               double spacing, const Meshes& meshes);
 
 /// How much of a body's matter lies inside of a collider.

@@ -25,7 +25,7 @@ double volume_in(const Filling& a, const Filling& b, const World<double>& world,
 
 }  // namespace
 
-Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes, const Sampling& sampling) {
+Filling fill(const model::Body& body, const model::Scene& scene, const Meshes& meshes, const Sampling& sampling) {
   const double spacing = scene.space.spacing;
   if (const auto* cloud = std::get_if<PointsShape>(&body.shape.form)) {
     MovingCloud read = read_moving_cloud(cloud->path, cloud->scale);
@@ -46,9 +46,9 @@ Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshe
   return f;
 }
 
-std::optional<std::string> cut_out(Filling& filling, const SceneDescription& scene, std::size_t b,
+std::optional<std::string> cut_out(Filling& filling, const model::Scene& scene, std::size_t b,
                                    const World<double>& world, const std::string& file) {
-  const scene::Body& body = scene.bodies[b];
+  const model::Body& body = scene.bodies[b];
   for (std::size_t c = 0; c < world.colliders.size(); ++c)
     if (std::find(body.cut.begin(), body.cut.end(), world.colliders[c].name) != body.cut.end())
       filling.cut.push_back(c);
@@ -63,7 +63,7 @@ std::optional<std::string> cut_out(Filling& filling, const SceneDescription& sce
   keep_others(filling.points);
   if (!filling.velocities.empty()) keep_others(filling.velocities);
   if (!filling.points.empty()) return std::nullopt;
-  return fmt::format("{}: error: body {} lies wholly inside of what is cut out of it, {}", place(file, body.mark),
+  return fmt::format("{}: error: body {} lies wholly inside of what is cut out of it, {}", place(file, scene, body),
                      body.name, fmt::join(body.cut, " and "));
 }
 

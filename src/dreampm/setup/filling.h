@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/setup/body_checks.h"
 #include "dreampm/state/world.h"
 
@@ -19,11 +19,11 @@ struct Filling {
   std::vector<std::size_t> cut;   ///< colliders of the world that were cut out of it
 };
 
-Filling fill(const scene::Body& body, const SceneDescription& scene, const Meshes& meshes, const Sampling& sampling);
+Filling fill(const model::Body& body, const model::Scene& scene, const Meshes& meshes, const Sampling& sampling);
 
 /// Takes out what lies inside of the colliders that body `b` of the scene names, as they stand in
 /// the world, whose box was laid. What is wrong where nothing is left.
-std::optional<std::string> cut_out(Filling& filling, const SceneDescription& scene, std::size_t b,
+std::optional<std::string> cut_out(Filling& filling, const model::Scene& scene, std::size_t b,
                                    const World<double>& world, const std::string& file);
 
 /// m^3: where both have matter.

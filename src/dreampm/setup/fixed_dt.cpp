@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
-#include "dreampm/scene/problem.h"
+#include "dreampm/setup/place.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -20,26 +20,25 @@ std::string too_many_stages(const World<R>& world) {
 }
 
 template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
-                    const std::string& file) {
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds,
+                    const model::Scene& scene, const std::string& file) {
+  const model::Time& time = scene.time;
   if (!time.dt || time.solver == SolverKind::projection) return;
   const double longest = longest_fixed_dt(world, seeds);
   if (std::min(*time.dt, world.dt_next) <= longest) return;
   // Rounded down: what is offered must do.
   const double digit = std::pow(10, std::floor(std::log10(longest)) - 2);
-  throw InputError(
-      scene::Problem{file, time.dt_mark.line, time.dt_mark.column,
-                     fmt::format("time.dt is {}: must be at most {:.3g} s, for sound and matter may cross {} of a cell "
-                                 "in a step; or give time.cfl instead",
-                                 *time.dt, digit * std::floor(longest / digit), largest_cfl)}
-          .text());
+  fail_input(
+      "{}: error: time.dt is {}: must be at most {:.3g} s, for sound and matter may cross {} of a cell in a step; or "
+      "give time.cfl instead",
+      place(file, scene, "time.dt"), *time.dt, digit * std::floor(longest / digit), largest_cfl);
 }
 
 template std::string too_many_stages(const World<float>&);
-template void check_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&, const scene::Time&,
+template void check_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&, const model::Scene&,
                              const std::string&);
 template std::string too_many_stages(const World<double>&);
-template void check_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&, const scene::Time&,
+template void check_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&, const model::Scene&,
                              const std::string&);
 
 }  // namespace dreampm

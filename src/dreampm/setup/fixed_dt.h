@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
@@ -16,7 +16,7 @@ std::string too_many_stages(const World<R>& world);
 /// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `file` names the scene.
 /// Throws InputError.
 template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const scene::Time& time,
-                    const std::string& file);
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds,
+                    const model::Scene& scene, const std::string& file);
 
 }  // namespace dreampm

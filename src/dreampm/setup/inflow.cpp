@@ -14,16 +14,17 @@ namespace dreampm {
 namespace {
 
 /// Whether the shape of an emitter that moves leaves the box at a key of its motion.
-std::string leaves(const World<double>& world, const scene::Space& space, const Emitter& emitter) {
+std::string leaves(const World<double>& world, const model::Space& space, const Emitter& emitter) {
   const Box3d own = emitter.shape->bounds();
   const double slack = 1e-6 * world.dx;
+  const Vec3d end = space.end();
   for (const PoseKey& key : emitter.path->keys) {
     const Pose pose = emitter.path->pose_at(key.t);
     for (int c = 0; c < 8; ++c) {
       const Vec3d p =
           pose({c & 4 ? own.max.x : own.min.x, c & 2 ? own.max.y : own.min.y, c & 1 ? own.max.z : own.min.z});
       for (int a = 0; a < 3; ++a)
-        if (p[a] < space.min[a] - slack || p[a] > space.max[a] + slack)
+        if (p[a] < space.min[a] - slack || p[a] > end[a] + slack)
           return fmt::format("reaches out of space along {} at t = {:.4g} s: keep it inside", "xyz"[a], key.t);
     }
   }
@@ -31,11 +32,12 @@ std::string leaves(const World<double>& world, const scene::Space& space, const 
 }
 
 /// Whether a region reaches out of the box, or into a collider.
-std::string misplaced(const World<double>& world, const scene::Space& space, const Region& region) {
+std::string misplaced(const World<double>& world, const model::Space& space, const Region& region) {
   const Box3d box = region.bounds();
   const double slack = 1e-6 * world.dx;
+  const Vec3d end = space.end();
   for (int a = 0; a < 3; ++a)
-    if (box.min[a] < space.min[a] - slack || box.max[a] > space.max[a] + slack)
+    if (box.min[a] < space.min[a] - slack || box.max[a] > end[a] + slack)
       return fmt::format("reaches out of space along {}: move it inside", "xyz"[a]);
   constexpr int samples = 24;
   for (const Collider& c : world.colliders)
@@ -51,33 +53,33 @@ std::string misplaced(const World<double>& world, const scene::Space& space, con
 
 }  // namespace
 
-void add_inflow(World<double>& world, const SceneDescription& scene, const Meshes& meshes, const std::string& file,
+void add_inflow(World<double>& world, const model::Scene& scene, const Meshes& meshes, const std::string& file,
                 std::vector<std::string>& errors) {
   const double spacing = scene.space.spacing;
   const auto region_of = [&](const Shape& shape, const std::string& what,
-                             const scene::Mark& mark) -> std::shared_ptr<const Region> {
+                             const std::string& at) -> std::shared_ptr<const Region> {
     try {
       return make_region(shape, spacing, meshes.regions());
     } catch (const InputError& e) {
-      errors.push_back(fmt::format("{}: error: {}: {}", place(file, mark), what, e.what()));
+      errors.push_back(fmt::format("{}: error: {}: {}", at, what, e.what()));
       return nullptr;
     }
   };
-  for (const scene::Emitter& e : scene.emitters) {
+  for (const model::Emitter& e : scene.emitters) {
     const std::string what = "emitter " + e.name;
-    const auto region = region_of(e.shape, what, e.mark);
+    const auto region = region_of(e.shape, what, place(file, scene, e));
     if (!region) continue;
     if (const std::string wrong = misplaced(world, scene.space, *region); !wrong.empty())
-      errors.push_back(fmt::format("{}: error: {} {}", place(file, e.mark), what, wrong));
+      errors.push_back(fmt::format("{}: error: {} {}", place(file, scene, e), what, wrong));
     Emitter one;
-    one.name = e.name, one.shape = region, one.set = static_cast<std::size_t>(e.material);
+    one.name = e.name, one.shape = region, one.set = index_of(scene.materials, e.material);
     one.along = normalized(e.velocity.value_or(e.direction));
     if (e.velocity) one.speed = {{0, length(*e.velocity)}};
     if (!e.flow.empty()) {
       const double area = EmissionPattern(*region, one.along, spacing).area();
       if (!(area > 0)) {
         errors.push_back(fmt::format("{}: error: {} is thinner than space.spacing {} m: make it larger",
-                                     place(file, e.mark), what, spacing));
+                                     place(file, scene, e), what, spacing));
         continue;
       }
       for (const Key<double>& key : e.flow) one.speed.push_back({key.t, key.value / area});
@@ -88,11 +90,11 @@ void add_inflow(World<double>& world, const SceneDescription& scene, const Meshe
     one.path = motion_path(e.motion, e.shape, spacing, meshes);
     if (one.path)
       if (const std::string wrong = leaves(world, scene.space, one); !wrong.empty())
-        errors.push_back(fmt::format("{}: error: {} {}", place(file, e.mark), what, wrong));
+        errors.push_back(fmt::format("{}: error: {} {}", place(file, scene, e), what, wrong));
     world.emitters.push_back(std::move(one));
   }
-  for (const scene::Sink& s : scene.sinks)
-    if (const auto region = region_of(s.shape, "sink " + s.name, s.mark)) {
+  for (const model::Sink& s : scene.sinks)
+    if (const auto region = region_of(s.shape, "sink " + s.name, place(file, scene, s))) {
       Sink& sink = world.sinks.emplace_back();
       sink.name = s.name, sink.shape = region;
       sink.path = motion_path(s.motion, s.shape, spacing, meshes);

@@ -4,11 +4,11 @@
 #include <vector>
 
 #include "dreampm/level_set/level_set.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
 /// A line each.
-std::vector<std::string> notes_on(const scene::SceneDescription& scene, const std::string& file, const Meshes& meshes);
+std::vector<std::string> notes_on(const model::Scene& scene, const std::string& file, const Meshes& meshes);
 
 }  // namespace dreampm

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/physics/param.h"
 #include "dreampm/physics/projection/time_step.h"
+#include "dreampm/physics/transfers.h"
 #include "dreampm/setup/place.h"
 #include "dreampm/solver/projection/mac_grid.h"
 
@@ -13,21 +15,21 @@ namespace {
 
 constexpr const char* remedy = "; leave time.solver out, or say explicit";
 
-void check_materials(const scene::SceneDescription& scene, const std::string& file, std::vector<std::string>& out) {
-  const scene::Material* liquid = nullptr;
-  for (const scene::Material& m : scene.materials) {
-    const std::string at = place(file, m.mark);
-    if (is_projected(m.info->name) && m.values["tension"] != 0)
+void check_materials(const model::Scene& scene, const std::string& file, std::vector<std::string>& out) {
+  const model::Material* liquid = nullptr;
+  for (const model::Material& m : scene.materials) {
+    const std::string at = place(file, scene, m);
+    if (is_projected(m.type) && m.values["tension"] != 0)
       out.push_back(
           fmt::format("{}: error: material {} has tension, which time.solver: projection does not have; take "
                       "the key out",
                       at, m.name));
-    if (!std::holds_alternative<Apic>(m.transfer))
+    if (m.transfer != Apic::name)
       out.push_back(
           fmt::format("{}: error: material {}: time.solver: projection has the transfer apic alone; take the "
                       "key out",
                       at, m.name));
-    if (!is_projected(m.info->name)) continue;
+    if (!is_projected(m.type)) continue;
     if (!liquid) liquid = &m;
     for (const char* value : {"density", "viscosity"})
       if (m.values[value] != liquid->values[value])
@@ -41,7 +43,7 @@ void check_materials(const scene::SceneDescription& scene, const std::string& fi
         fmt::format("{}: error: time.solver: projection moves liquids, and there is no liquid{}", file, remedy));
 }
 
-void check_space(const scene::Space& space, const std::string& file, std::vector<std::string>& out) {
+void check_space(const model::Space& space, const std::string& file, std::vector<std::string>& out) {
   const Vec3i cells = space.cells();
   for (int a = 0; a < 3; ++a)
     if (space.periodic[static_cast<std::size_t>(a)] && cells[a] % period_cells != 0)
@@ -54,23 +56,23 @@ void check_space(const scene::Space& space, const std::string& file, std::vector
 
 }  // namespace
 
-std::vector<std::string> projection_refusals(const scene::SceneDescription& scene, const std::string& file) {
+std::vector<std::string> projection_refusals(const model::Scene& scene, const std::string& file) {
   std::vector<std::string> out;
   if (scene.time.solver != SolverKind::projection) return out;
   check_materials(scene, file, out);
   check_space(scene.space, file, out);
-  const auto refuse = [&](const scene::Mark& mark, const std::string& what, const std::string& name) {
+  const auto refuse = [&](const model::Collider& c, const std::string& what) {
     out.push_back(
         fmt::format("{}: error: {} {}: time.solver: projection knows liquids between walls and colliders, "
                     "emitters and sinks{}",
-                    place(file, mark), what, name, remedy));
+                    place(file, scene, c), what, c.name, remedy));
   };
-  for (const scene::Collider& c : scene.colliders)
-    if (c.pin || c.holds) refuse(c.mark, c.pin ? "pin" : "collider that holds matter,", c.name);
+  for (const model::Collider& c : scene.colliders)
+    if (c.pin || c.holds) refuse(c, c.pin ? "pin" : "collider that holds matter,");
   return out;
 }
 
-std::string projection_warning(const scene::SceneDescription& scene, const std::string& file) {
+std::string projection_warning(const model::Scene& scene, const std::string& file) {
   if (scene.time.solver != SolverKind::projection || !(scene.time.cfl > usual_projection_cfl)) return {};
   return fmt::format(
       "{}: time.cfl is {:.3g}: above {} it is for previews, for thin sheets jump into the bulk before they are "

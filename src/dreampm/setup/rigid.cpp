@@ -9,12 +9,15 @@
 #include "dreampm/setup/collider_mesh.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/place.h"
+#include "dreampm/state/block_bounds.h"
 
 namespace dreampm {
 namespace {
 
 /// Cells along the longest side of a shape over which its mass is added up.
 constexpr int cells_along = 48;
+/// A distance changes by no more than this from meter to meter; those from meshes are interpolated.
+constexpr double steepest = 1.2;
 
 /// Volume [m^3], center [m] and inertia over density [m^5] of a region: added up over cells, of
 /// which one that the surface cuts counts by its distance.
@@ -39,11 +42,29 @@ MassSums mass_sums(const Region& region) {
   MassSums sums;
   Vec3d first{};
   Mat3d second{};
-  for (int i = 0; i < n[0]; ++i)
+  const auto middle_of = [&](double i, double j, double k) { return box.min + Vec3d{i, j, k} * step; };
+  // Of a group of cells that no surface comes near, one distance says all.
+  constexpr int group = 8;
+  const double far = width + 0.5 * group * length(step) * steepest;
+  const auto whole_part = [&](int i, int j, int k) -> std::optional<double> {
+    const double distance = region.distance(middle_of(i + 0.5 * group, j + 0.5 * group, k + 0.5 * group));
+    if (std::abs(distance) < far) return std::nullopt;
+    return distance < 0 ? 1.0 : 0.0;
+  };
+  std::vector<std::optional<double>> whole;  // by group along y and z
+  const int across = (n[2] + group - 1) / group;
+  for (int i = 0; i < n[0]; ++i) {
+    if (i % group == 0) {
+      whole.clear();
+      for (int j = 0; j < n[1]; j += group)
+        for (int k = 0; k < n[2]; k += group) whole.push_back(whole_part(i, j, k));
+    }
     for (int j = 0; j < n[1]; ++j)
       for (int k = 0; k < n[2]; ++k) {
-        const Vec3d p = box.min + Vec3d{i + 0.5, j + 0.5, k + 0.5} * step;
-        const double part = std::clamp(0.5 - region.distance(p) / width, 0.0, 1.0) * step.x * step.y * step.z;
+        const Vec3d p = middle_of(i + 0.5, j + 0.5, k + 0.5);
+        const std::optional<double>& known = whole[static_cast<std::size_t>(j / group * across + k / group)];
+        const double inside = known ? *known : std::clamp(0.5 - region.distance(p) / width, 0.0, 1.0);
+        const double part = inside * step.x * step.y * step.z;
         if (part == 0) continue;
         sums.volume += part;
         const Vec3d way = p - middle;
@@ -52,6 +73,7 @@ MassSums mass_sums(const Region& region) {
         // Of the cell itself.
         second = second + Mat3d::diagonal(step.x * step.x, step.y * step.y, step.z * step.z) * (part / 12);
       }
+  }
   if (!(sums.volume > 0)) return sums;
   const Vec3d off = first / sums.volume;
   sums.center = middle + off;
@@ -69,6 +91,7 @@ bool has_own_form(const Shape& shape) {
 double depth_in(const Collider& body, const Collider& other) {
   constexpr int samples = 20;
   const Box3d box = body.bounds();
+  if (!meet(box, other.bounds())) return 0;
   double depth = 0;
   for (int n = 0; n < samples * samples * samples; ++n) {
     const Vec3d part{(n / (samples * samples) + 0.5) / samples, (n / samples % samples + 0.5) / samples,
@@ -81,11 +104,11 @@ double depth_in(const Collider& body, const Collider& other) {
 
 }  // namespace
 
-CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space) {
+CollisionShape collision_shape(const model::Collider& given, const model::Space& space) {
   CollisionShape shape{given.shape, nullptr, !given.pin};
   if (given.sequence) return shape;  // met by the distances of the collider
   if (given.thickness || !has_own_form(given.shape)) {
-    const Box3d room{space.min, space.max};
+    const Box3d room{space.min, space.end()};
     shape.mesh =
         std::make_shared<const TriMesh>(collider_mesh(given.shape, 0.5 * space.dx(), room, space.min, given.thickness));
     shape.shape.form = MeshShape{};
@@ -94,7 +117,7 @@ CollisionShape collision_shape(const scene::Collider& given, const scene::Space&
 }
 
 template <class R>
-void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, const scene::Space& space,
+void make_rigid(World<R>& world, std::size_t c, const model::Collider& given, const model::Space& space,
                 std::vector<std::string>& errors) {
   Collider& collider = world.colliders[c];
   const MassSums sums = mass_sums(*collider.shape);
@@ -102,14 +125,15 @@ void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, co
     errors.push_back(fmt::format("rigid body {} has no volume", given.name));
     return;
   }
+  const Vec3d end = space.end();
   for (int side = 0; side < 6; ++side) {
     if (space.walls[static_cast<std::size_t>(side)].type == WallType::open) continue;
     const int axis = side / 2;
     const Box3d box = collider.bounds();
-    const double beyond = side % 2 ? box.max[axis] - space.max[axis] : space.min[axis] - box.min[axis];
+    const double beyond = side % 2 ? box.max[axis] - end[axis] : space.min[axis] - box.min[axis];
     if (beyond > shallow_overlap * world.dx)
       errors.push_back(fmt::format("rigid body {} reaches {:.4g} m outside the wall {}: move it inside", given.name,
-                                   beyond, scene::wall_names[static_cast<std::size_t>(side)]));
+                                   beyond, side_names[static_cast<std::size_t>(side)]));
   }
   const double density = given.rigid->density ? *given.rigid->density : *given.rigid->mass / sums.volume;
   RigidBody body{
@@ -119,9 +143,9 @@ void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, co
   collider.rigid = true;
   collider.twist = {given.rigid->velocity, given.rigid->spin, sums.center};
 }
-template void make_rigid(World<float>&, std::size_t, const scene::Collider&, const scene::Space&,
+template void make_rigid(World<float>&, std::size_t, const model::Collider&, const model::Space&,
                          std::vector<std::string>&);
-template void make_rigid(World<double>&, std::size_t, const scene::Collider&, const scene::Space&,
+template void make_rigid(World<double>&, std::size_t, const model::Collider&, const model::Space&,
                          std::vector<std::string>&);
 
 template <class R>
@@ -135,15 +159,15 @@ std::optional<std::string> starts_inside(const World<R>& world, std::size_t body
 template std::optional<std::string> starts_inside(const World<float>&, std::size_t, std::size_t);
 template std::optional<std::string> starts_inside(const World<double>&, std::size_t, std::size_t);
 
-void add_rigid(World<double>& world, const SceneDescription& scene, const std::string& file,
+void add_rigid(World<double>& world, const model::Scene& scene, const std::string& file,
                std::vector<std::string>& errors) {
   const auto any = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const auto& c) { return c.rigid; });
   if (!any) return;
   const auto report = [&](std::size_t c, const std::string& what) {
-    errors.push_back(fmt::format("{}: error: {}", place(file, scene.colliders[c].mark), what));
+    errors.push_back(fmt::format("{}: error: {}", place(file, scene, scene.colliders[c]), what));
   };
   for (std::size_t c = 0; c < scene.colliders.size(); ++c) {
-    const scene::Collider& given = scene.colliders[c];
+    const model::Collider& given = scene.colliders[c];
     try {
       world.collision.push_back(collision_shape(given, scene.space));
     } catch (const InputError& e) {

@@ -4,18 +4,18 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
 
 /// What bodies meet a collider with. Throws InputError for a mesh that cannot be read.
-CollisionShape collision_shape(const scene::Collider& given, const scene::Space& space);
+CollisionShape collision_shape(const model::Collider& given, const model::Space& space);
 
 /// Makes collider `c` of the world a rigid body: mass, center and inertia of its shape, its motion
 /// at the start. What is wrong goes to `errors`.
 template <class R>
-void make_rigid(World<R>& world, std::size_t c, const scene::Collider& given, const scene::Space& space,
+void make_rigid(World<R>& world, std::size_t c, const model::Collider& given, const model::Space& space,
                 std::vector<std::string>& errors);
 
 /// What is wrong where a rigid body begins inside of another collider that it should meet; both
@@ -26,7 +26,7 @@ std::optional<std::string> starts_inside(const World<R>& world, std::size_t body
 /// Makes those colliders of a world rigid bodies that the scene says are: mass, center and inertia
 /// of their shapes, and what they meet other bodies with. What is wrong, a body inside of another
 /// or of a collider, goes to `errors`, a line each; `file` names the scene.
-void add_rigid(World<double>& world, const SceneDescription& scene, const std::string& file,
+void add_rigid(World<double>& world, const model::Scene& scene, const std::string& file,
                std::vector<std::string>& errors);
 
 }  // namespace dreampm

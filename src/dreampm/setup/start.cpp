@@ -95,7 +95,7 @@ StartInfo start_info(const fs::path& file) {
   return info;
 }
 
-int first_frame(const SceneDescription& scene) { return scene.start.empty() ? 1 : start_info(scene.start).frame; }
+int first_frame(const model::Scene& scene) { return scene.start.empty() ? 1 : start_info(scene.start).frame; }
 
 template <class R>
 void write_start(const fs::path& file, const World<R>& world, const Motion<R>& motion, const ExpectedSpeed& expected) {
@@ -118,7 +118,7 @@ void write_start(const fs::path& file, const World<R>& world, const Motion<R>& m
 }
 
 template <class R>
-void begin(Engine<R>& engine, const InitialState& start, const SceneDescription& scene) {
+void begin(Engine<R>& engine, const InitialState& start, const model::Scene& scene) {
   if (scene.start.empty()) return engine.begin(start.seeds);
   const std::string& file = scene.start;
   const ArchiveReader a(file, start_format, start_version);
@@ -139,7 +139,7 @@ void begin(Engine<R>& engine, const InitialState& start, const SceneDescription&
 
 template void write_start(const fs::path&, const World<float>&, const Motion<float>&, const ExpectedSpeed&);
 template void write_start(const fs::path&, const World<double>&, const Motion<double>&, const ExpectedSpeed&);
-template void begin(Engine<float>&, const InitialState&, const SceneDescription&);
-template void begin(Engine<double>&, const InitialState&, const SceneDescription&);
+template void begin(Engine<float>&, const InitialState&, const model::Scene&);
+template void begin(Engine<double>&, const InitialState&, const model::Scene&);
 
 }  // namespace dreampm

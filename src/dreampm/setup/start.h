@@ -28,7 +28,7 @@ struct StartInfo {
 StartInfo start_info(const std::filesystem::path& file);
 
 /// The frame that a run of the scene begins with: 1 without a start. Throws as start_info.
-int first_frame(const SceneDescription& scene);
+int first_frame(const model::Scene& scene);
 
 /// Writes what decides the future. `world` and `motion` must be current in memory
 /// (Engine::download), and the grid formed.
@@ -41,6 +41,6 @@ void write_start(const std::filesystem::path& file, const World<R>& world, const
 /// is the same to the bit; else the grid is formed anew, of the same particles. Throws InputError
 /// for a start of another spacing, space or precision, or without one of the scene's materials.
 template <class R>
-void begin(Engine<R>& engine, const InitialState& start, const SceneDescription& scene);
+void begin(Engine<R>& engine, const InitialState& start, const model::Scene& scene);
 
 }  // namespace dreampm

@@ -212,7 +212,7 @@ class Search {
 
 std::optional<ThinPlace> thin_place(const World<double>& world, std::size_t c) { return Search(world, c).thinnest(); }
 
-std::vector<std::string> thin_collider_warnings(const World<double>& world, const scene::Space& space) {
+std::vector<std::string> thin_collider_warnings(const World<double>& world, const model::Space& space) {
   std::vector<std::string> lines;
   for (std::size_t c = 0; c < world.colliders.size(); ++c)
     if (const auto thin = thin_place(world, c)) {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
@@ -25,6 +25,6 @@ struct ThinPlace {
 std::optional<ThinPlace> thin_place(const World<double>& world, std::size_t c);
 
 /// A line for each collider of the world with a thin place, with the spacing that would do.
-std::vector<std::string> thin_collider_warnings(const World<double>& world, const scene::Space& space);
+std::vector<std::string> thin_collider_warnings(const World<double>& world, const model::Space& space);
 
 }  // namespace dreampm

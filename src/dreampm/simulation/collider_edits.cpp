@@ -6,7 +6,6 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/level_set/level_set.h"
-#include "dreampm/scene/emit.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/rigid.h"
 #include "dreampm/simulation.h"
@@ -19,28 +18,28 @@ namespace {
 /// Cells that a surface may be off its collider's pose.
 constexpr double most_slack = 0.25;
 
-std::size_t number_of(const SceneDescription& scene, std::string_view name) {
+std::size_t number_of(const model::Scene& scene, std::string_view name) {
   const auto at =
       std::find_if(scene.colliders.begin(), scene.colliders.end(), [&](const auto& c) { return c.name == name; });
   return static_cast<std::size_t>(at - scene.colliders.begin());
 }
 
-void refuse_taken(const SceneDescription& scene, const std::string& name, std::string_view who) {
+void refuse_taken(const model::Scene& scene, const std::string& name) {
   const auto taken = [&](const auto& list) {
     return std::any_of(list.begin(), list.end(), [&](const auto& one) { return one.name == name; });
   };
   if (taken(scene.materials) || taken(scene.colliders))
-    fail_input("{}: a material or collider of the name {} is there already: give another", who, name);
+    fail_input("a material or collider of the name {} is there already: give another", name);
 }
 
 /// Makes the world's colliders those of the scene, in its order: one that the world has not is
 /// `fresh`. What goes by their numbers goes along.
 template <class R>
-void arrange(World<R>& world, const SceneDescription& scene, const std::optional<Collider>& fresh) {
+void arrange(World<R>& world, const model::Scene& scene, const std::optional<Collider>& fresh) {
   std::vector<Collider> colliders;
   std::vector<CollisionShape> collision;
   std::vector<std::optional<std::size_t>> to(world.colliders.size());
-  for (const scene::Collider& given : scene.colliders) {
+  for (const model::Collider& given : scene.colliders) {
     const auto known = std::find_if(world.colliders.begin(), world.colliders.end(),
                                     [&](const Collider& c) { return c.name == given.name; });
     const auto old = static_cast<std::size_t>(known - world.colliders.begin());
@@ -64,9 +63,10 @@ void arrange(World<R>& world, const SceneDescription& scene, const std::optional
 template <class R>
 void refuse_overlap(const World<R>& world, std::size_t c, const std::string& what) {
   std::vector<Vec3d> points;
-  points.reserve(world.particles());
+  const bool repeats = std::any_of(world.periodic.begin(), world.periodic.end(), [](bool axis) { return axis; });
+  const Box3d reach = repeats ? world.domain() : world.colliders[c].bounds();
   for (std::size_t s = 0; s < world.sets.size(); ++s)
-    ParticleSetView(world, s).for_each([&](std::size_t, const Vec3d& x) { points.push_back(x); });
+    ParticleSetView(world, s).for_each_near(reach, [&](std::size_t, const Vec3d& x) { points.push_back(x); });
   if (const Overlap in = matter_inside(points, world, c); in.depth > shallow_overlap * world.dx)
     fail_input("{}: {} particles lie inside of it, up to {:.3g} m deep: put it elsewhere, or take them out first", what,
                in.particles, in.depth);
@@ -79,31 +79,34 @@ void refuse_overlap(const World<R>& world, std::size_t c, const std::string& wha
 }
 
 /// Goes on with a scene that has one collider or rigid body more.
-void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, const std::string& what,
-            double slack = Collider::settle_distance) {
-  const SceneDescription& scene = next.description();
+void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, const std::string& what) {
+  const model::Scene& scene = next.model();
   const std::size_t c = number_of(scene, name);
-  const scene::Collider& given = scene.colliders.at(c);
+  const model::Collider& given = scene.colliders.at(c);
   impl.with_engine([&]<class R>(Engine<R>& engine) {
     const Meshes files(Meshes::Say::keep);
     engine.download(MatterFields::all);
-    // Where something throws, nothing has changed.
-    World<R> world = engine.world();
-    Collider fresh{given.name, collider_region(given, scene.space, files), given.type, given.friction, given.sticky,
-                   given.holds};
-    fresh.slack = slack;
+    World<R>& world = engine.world();
+    const Collider fresh{
+        given.name, collider_region(given, scene.space, files), given.type, given.friction, given.sticky, given.holds};
     arrange(world, scene, fresh);
-    if (given.rigid) {
-      if (world.collision.empty())
-        for (const scene::Collider& one : scene.colliders) world.collision.push_back(collision_shape(one, scene.space));
-      std::vector<std::string> errors;
-      make_rigid(world, c, given, scene.space, errors);
-      if (!errors.empty()) throw InputError(fmt::format("{}: {}", what, fmt::join(errors, "\n")));
-      std::sort(world.rigid.begin(), world.rigid.end(),
-                [](const RigidBody& a, const RigidBody& b) { return a.collider < b.collider; });
+    try {
+      if (given.rigid) {
+        if (world.collision.empty())
+          for (const model::Collider& one : scene.colliders)
+            world.collision.push_back(collision_shape(one, scene.space));
+        std::vector<std::string> errors;
+        make_rigid(world, c, given, scene.space, errors);
+        if (!errors.empty()) throw InputError(fmt::format("{}: {}", what, fmt::join(errors, "\n")));
+        std::sort(world.rigid.begin(), world.rigid.end(),
+                  [](const RigidBody& a, const RigidBody& b) { return a.collider < b.collider; });
+      }
+      refuse_overlap(world, c, what);
+    } catch (...) {
+      arrange(world, impl.state.scene.model(), std::nullopt);  // as it was
+      throw;
     }
-    refuse_overlap(world, c, what);
-    engine.replace(std::move(world), &std::as_const(engine).motion());
+    engine.colliders_changed();
   });
   impl.state.scene = next;
   impl.received = {};
@@ -112,17 +115,16 @@ void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, co
 
 /// Goes on without a collider.
 void take_out(Simulation::Impl& impl, std::string_view name) {
-  SceneDescription bare = impl.state.scene.description();
-  std::erase_if(bare.colliders, [&](const scene::Collider& c) { return c.name == name; });
-  bare.render.looks.erase(std::string(name));
-  for (scene::Body& body : bare.bodies) std::erase(body.cut, name);  // they are as they were at the start
-  // Read again, for what else goes by its name.
-  const Scene next = Scene(std::move(bare), impl.state.scene.file()).with({});
+  // Checked for what else goes by its name.
+  const Scene next = impl.edited([&](model::Scene& bare) {
+    std::erase_if(bare.colliders, [&](const model::Collider& c) { return c.name == name; });
+    bare.render.looks.erase(std::string(name));
+    for (model::Body& body : bare.bodies) std::erase(body.cut, name);  // they are as they were at the start
+  });
   impl.with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
-    World<R> world = engine.world();
-    arrange(world, next.description(), std::nullopt);
-    engine.replace(std::move(world), &std::as_const(engine).motion());
+    arrange(engine.world(), next.model(), std::nullopt);
+    engine.colliders_changed();
   });
   impl.state.scene = next;
   impl.received = {};
@@ -130,21 +132,6 @@ void take_out(Simulation::Impl& impl, std::string_view name) {
 }
 
 }  // namespace
-
-void Simulation::add_rigid(const NewRigid& body) {
-  refuse_taken(scene().description(), body.name, "add_rigid");
-  std::vector<std::string> over{fmt::format(
-      "rigid.{}={{shape: {}, density: {}, velocity: {}, spin: {}, friction: {}, restitution: {}{}}}", body.name,
-      body.shape.text(), body.density, scene::flow_text(body.velocity), scene::flow_text(body.spin), body.friction,
-      body.restitution, body.position ? ", position: " + scene::flow_text(*body.position) : "")};
-  if (!body.look.empty()) over.push_back(fmt::format("render.looks.{}={}", body.name, body.look));
-  put_in(*impl_, impl_->edited_scene(over), body.name, "rigid body " + body.name);
-}
-
-void Simulation::remove_rigid(std::string_view name) {
-  impl_->with_engine([&](auto& engine) { impl_->rigid_body(engine.world(), name); });
-  take_out(*impl_, name);
-}
 
 void Simulation::hold(std::string_view rigid, const Grip& grip) {
   if (!is_finite(grip.at) || !is_finite(grip.to) || !(grip.stiffness > 0) || !(grip.damping >= 0) ||
@@ -171,25 +158,23 @@ void Simulation::set_slack(std::string_view collider, double slack) {
   impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).slack = slack; });
 }
 
-void Simulation::add_collider(const NewCollider& collider) {
-  if (!(collider.slack > 0 && collider.slack <= most_slack))
-    fail_input("add_collider: slack is {}: must be above 0 to {} cells", collider.slack, most_slack);
-  refuse_taken(scene().description(), collider.name, "add_collider");
-  // Those that are without friction may not say that they have none.
-  const std::string friction = collider.friction != 0 ? fmt::format(", friction: {}", collider.friction) : "";
-  std::vector<std::string> over{fmt::format("colliders.{}={{shape: {}, type: {}{}}}", collider.name,
-                                            collider.shape.text(), collider.type, friction)};
-  if (!collider.look.empty()) over.push_back(fmt::format("render.looks.{}={}", collider.name, collider.look));
-  put_in(*impl_, impl_->edited_scene(over), collider.name, "collider " + collider.name, collider.slack);
+void Simulation::add(const model::Collider& collider, const std::optional<model::Look>& look) {
+  refuse_taken(scene().model(), collider.name);
+  const Scene next = impl_->edited([&](model::Scene& scene) {
+    // As a scene file has them: colliders, rigid bodies, pins.
+    const auto kind = [](const model::Collider& c) { return c.pin ? 2 : c.rigid ? 1 : 0; };
+    const auto before = std::find_if(scene.colliders.begin(), scene.colliders.end(),
+                                     [&](const model::Collider& c) { return kind(c) > kind(collider); });
+    scene.colliders.insert(before, collider);
+    if (look) scene.render.looks[collider.name] = *look;
+  });
+  put_in(*impl_, next, collider.name, (collider.rigid ? "rigid body " : "collider ") + collider.name);
 }
 
 void Simulation::remove_collider(std::string_view name) {
-  impl_->with_engine([&](auto& engine) {
-    const Collider& c = impl_->collider(engine.world(), name);
-    if (c.rigid) fail_input("remove_collider: {} is a rigid body: use remove_rigid", name);
-  });
-  const SceneDescription& scene = this->scene().description();
-  if (const scene::Collider& c = scene.colliders.at(number_of(scene, name)); c.pin || c.deletes)
+  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), name); });
+  const model::Scene& scene = this->scene().model();
+  if (const model::Collider& c = scene.colliders.at(number_of(scene, name)); c.pin || c.deletes)
     fail_input("remove_collider: {} is a {}, which stays", name, c.pin ? "pin" : "sink");
   take_out(*impl_, name);
 }

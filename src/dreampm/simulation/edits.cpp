@@ -1,5 +1,5 @@
-// Edits of a running simulation. The scene that it goes by changes with it, and so do its messages:
-// what is asked for is laid over the scene, which is read again.
+// Edits of a running simulation. The scene that it goes by changes with it: a copy of the model is
+// changed and checked, and the difference goes to the world. No text is made, and no file is read.
 #include <fmt/ranges.h>
 
 #include <array>
@@ -7,11 +7,12 @@
 #include "dreampm/backend/carried_motion.h"
 #include "dreampm/base/error.h"
 #include "dreampm/level_set/level_set.h"
-#include "dreampm/scene/emit.h"
+#include "dreampm/physics/transfers.h"
 #include "dreampm/setup/body_checks.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/projection_checks.h"
 #include "dreampm/simulation.h"
+#include "dreampm/simulation/scene_access.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_view.h"
@@ -19,19 +20,34 @@
 namespace dreampm {
 namespace {
 
-/// A body of this name alone in the scene.
-SceneDescription with_only(const Scene& scene, const NewBody& body) {
-  SceneDescription empty = scene.description();
-  empty.bodies.clear();
-  empty.start.clear();
-  empty.emitters.clear();
-  empty.sinks.clear();
-  empty.probes.clear();  // they may name bodies
-  const std::string text =
-      fmt::format("bodies.{}={{material: {}, shape: {}, velocity: {}, spin: {}{}}}", body.name, body.material,
-                  body.shape.text(), scene::flow_text(body.velocity), scene::flow_text(body.spin),
-                  body.color ? ", color: " + scene::flow_text(*body.color) : "");
-  return Scene(std::move(empty), scene.file()).with({text}).description();
+/// The scene with a body in place of those that it has, checked and with no other way for matter to
+/// come in.
+model::Scene with_only(const Scene& scene, const model::Body& body) {
+  model::Scene alone = scene.model();
+  alone.bodies = {body};
+  alone.start.clear(), alone.emitters.clear(), alone.sinks.clear();
+  alone.probes.clear();  // they may name bodies
+  return Scene(std::move(alone), scene.file()).model();
+}
+
+/// Throws InputError for a shape that no collider may have; it may lie anywhere.
+void check_shape(const Scene& scene, const Shape& shape) {
+  model::Scene bare;
+  bare.space = scene.model().space, bare.materials = scene.model().materials;
+  bare.start = "nothing";
+  bare.colliders = {{.name = "region", .shape = shape}};
+  Scene(std::move(bare), scene.file());
+}
+
+/// Gives a parameter a value, or one of the keys of its transfer. One that is another way to say
+/// the same is forgotten.
+void set_value(model::Material& material, std::string_view key, double value) {
+  const MaterialInfo& info = info_of(material);
+  const Param* p = info.find(key);
+  if (!p) return (is_transfer_key(key) ? material.transfer_values : material.values).set(key, value);
+  for (const Param& other : info.params)
+    if (other.excludes == key || other.key == p->excludes) material.values.erase(other.key);
+  material.values.set(key, value);
 }
 
 template <class R>
@@ -41,15 +57,15 @@ Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& moti
 
 }  // namespace
 
-Scene Simulation::Impl::edited_scene(const std::vector<std::string>& set) const {
-  Scene with = state.scene.with(set);
-  if (const auto refused = projection_refusals(with.description(), with.file()); !refused.empty())
+Scene Simulation::Impl::checked(model::Scene next) const {
+  Scene scene(std::move(next), state.scene.file());
+  if (const auto refused = refused_parts(scene); !refused.empty())
     throw InputError(fmt::format("{}", fmt::join(refused, "\n")));
-  return with;
+  return scene;
 }
 
 void Simulation::set_cfl(double cfl) {
-  impl_->state.scene = impl_->edited_scene({fmt::format("time.cfl={}", cfl)});
+  impl_->state.scene = impl_->edited([&](model::Scene& next) { next.time.cfl = cfl; });
   impl_->with_engine([&](auto& engine) { engine.world().settings.cfl = cfl; });
   impl_->state.edited = true;
 }
@@ -87,36 +103,23 @@ std::uint32_t Simulation::Impl::insert(std::size_t m, std::vector<ParticleSeed> 
   return first;
 }
 
-SceneShape SceneShape::box(const Vec3d& min, const Vec3d& max) {
-  return SceneShape(fmt::format("{{box: {{min: {}, max: {}}}}}", scene::flow_text(min), scene::flow_text(max)));
-}
-SceneShape SceneShape::sphere(const Vec3d& center, double radius) {
-  return SceneShape(fmt::format("{{sphere: {{radius: {}}}, center: {}}}", radius, scene::flow_text(center)));
-}
-SceneShape SceneShape::cylinder(const Vec3d& center, double radius, double height) {
-  return SceneShape(
-      fmt::format("{{cylinder: {{radius: {}, height: {}}}, center: {}}}", radius, height, scene::flow_text(center)));
-}
-SceneShape SceneShape::yaml(std::string text) { return SceneShape(std::move(text)); }
-
 void Simulation::set_parameter(std::string_view material, std::string_view key, double value) {
   const std::size_t m = impl_->material(material);
-  // What a scene file says in words alone is said in them, and so is a word's number out of range.
-  std::string text = fmt::format("{}", value);
-  if (const Param* p = scene().description().materials[m].info->find(key))
-    for (const Word& word : p->words)
-      if (word.value == value && (p->words_only || value < p->min || value > p->max)) text = word.name;
-  impl_->state.scene = impl_->edited_scene({fmt::format("materials.{}.{}={}", material, key, text)});
+  if (!std::isfinite(value))
+    fail_input("set_parameter: materials.{}.{} is {}: must be a finite number", material, key, value);
+  impl_->state.scene = impl_->edited([&](model::Scene& next) { set_value(next.materials[m], key, value); });
   std::vector<std::string> notes;
   impl_->with_engine([&](auto& engine) {
-    use_material(engine.world().sets[m], scene().description().materials[m], engine.world(), impl_->state.expected,
-                 notes);
+    use_material(engine.world().sets[m], scene().model().materials[m], engine.world(), impl_->state.expected, notes);
   });
   impl_->state.edited = true;
 }
 
 void Simulation::set_gravity(const Vec3d& gravity) {
-  impl_->state.scene = impl_->edited_scene({"gravity=" + scene::flow_text(gravity)});
+  impl_->state.scene = impl_->edited([&](model::Scene& next) {
+    next.gravity = gravity;
+    next.gravity_keys.clear();
+  });
   impl_->with_engine([&](auto& engine) {
     engine.world().gravity = gravity;
     engine.world().gravity_keys.clear();
@@ -125,14 +128,12 @@ void Simulation::set_gravity(const Vec3d& gravity) {
   });
 }
 
-void Simulation::set_wall(Side side, std::string_view type, double friction) {
-  const auto s = static_cast<std::size_t>(side);
-  // Those that are without friction may not say that they have none.
-  const bool says_friction = friction != 0 || type == "separate" || type == "slip";
-  impl_->state.scene = impl_->edited_scene({fmt::format("space.walls.{}={{type: {}{}}}", scene::wall_names.at(s), type,
-                                                        says_friction ? fmt::format(", friction: {}", friction) : "")});
-  const scene::Wall& wall = scene().description().space.walls[s];
-  impl_->with_engine([&](auto& engine) { engine.world().walls[s] = {wall.type, wall.friction, wall.skin_friction}; });
+void Simulation::set_wall(Side side, const Wall& wall) {
+  const std::size_t s = index(side);
+  if (scene().model().space.periodic.at(s / 2))
+    fail_input("set_wall: space.walls.{} is on the periodic axis {}: there is no wall", side_names[s], "xyz"[s / 2]);
+  impl_->state.scene = impl_->edited([&](model::Scene& next) { next.space.walls[s] = wall; });
+  impl_->with_engine([&](auto& engine) { engine.world().walls[s] = wall; });
   impl_->state.edited = true;
 }
 
@@ -151,7 +152,7 @@ void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
   if (!is_finite(stroke.point) || !is_finite(stroke.velocity) || !(stroke.radius > 0) || !(stroke.rate >= 0) ||
       !std::isfinite(stroke.radius + stroke.rate))
     fail_input("set_brush: point and velocity must be finite, radius above 0 and rate at least 0");
-  for (const ForceField& f : scene().description().fields)
+  for (const model::ForceField& f : scene().model().fields)
     if (f.name == name) fail_input("set_brush: the scene has a field of the name {}: give another", name);
   impl_->with_engine([&](auto& engine) {
     std::vector<ForceField>& fields = engine.world().fields;
@@ -168,21 +169,21 @@ void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
 void Simulation::lift_brush(std::string_view name) {
   impl_->with_engine([&](auto& engine) {
     std::vector<ForceField>& fields = engine.world().fields;
-    const auto own = fields.begin() + static_cast<std::ptrdiff_t>(scene().description().fields.size());
+    const auto own = fields.begin() + static_cast<std::ptrdiff_t>(scene().model().fields.size());
     const auto brush = std::find_if(own, fields.end(), [&](const ForceField& f) { return f.name == name; });
     if (brush == fields.end()) return;
     fields.erase(brush);
   });
 }
 
-void Simulation::add_material(const std::string& name, const std::string& text, const std::string& look) {
+void Simulation::add_material(const model::Material& material, const std::optional<model::Look>& look) {
   const std::vector<std::string> names = scene().materials();
-  if (std::find(names.begin(), names.end(), name) != names.end())
-    fail_input("add_material: the scene has a material {} already", name);
-  std::vector<std::string> over{fmt::format("materials.{}={}", name, text)};
-  if (!look.empty()) over.push_back(fmt::format("render.looks.{}={}", name, look));
-  const Scene with = impl_->edited_scene(over);
-  if (with.materials().back() != name) fail_run("material {} is not the last of its scene", name);
+  if (std::find(names.begin(), names.end(), material.name) != names.end())
+    fail_input("add_material: the scene has a material {} already", material.name);
+  const Scene with = impl_->edited([&](model::Scene& next) {
+    next.materials.push_back(material);
+    if (look) next.render.looks[material.name] = *look;
+  });
   std::vector<std::string> notes;
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
@@ -190,7 +191,7 @@ void Simulation::add_material(const std::string& name, const std::string& text, 
     ParticleSet<R>& set = world.sets.emplace_back();
     const double spacing = scene().spacing();
     set.rest_volume = spacing * spacing * spacing;
-    use_material(set, with.description().materials.back(), world, impl_->state.expected, notes);
+    use_material(set, with.model().materials.back(), world, impl_->state.expected, notes);
     engine.motion().sets.emplace_back();
     insert<R>(world, world.sets.size() - 1, {});
     engine.replace(World<R>(world), &std::as_const(engine).motion());  // to backends a world of other sets is another
@@ -203,9 +204,9 @@ void Simulation::add_material(const std::string& name, const std::string& text, 
 std::size_t Simulation::convert(std::string_view from, std::string_view to) {
   const std::size_t old = impl_->material(from), now = impl_->material(to);
   if (old == now) return 0;
-  SceneDescription scene = this->scene().description();
-  for (scene::Emitter& e : scene.emitters)
-    if (e.material == static_cast<int>(old)) e.material = static_cast<int>(now);
+  model::Scene scene = this->scene().model();
+  for (model::Emitter& e : scene.emitters)
+    if (e.material == from) e.material = to;
   const std::size_t count = impl_->with_engine([&]<class R>(Engine<R>& engine) {
     World<R>& world = engine.world();
     engine.download(MatterFields::all);
@@ -231,7 +232,7 @@ std::size_t Simulation::convert(std::string_view from, std::string_view to) {
     engine.upload(MatterFields::all);
     return seeds.size();
   });
-  impl_->state.scene = Scene(std::move(scene), this->scene().file());
+  impl_->state.scene = SceneAccess::make(std::move(scene), this->scene().file());
   impl_->forget_views();
   impl_->state.edited = true;
   return count;
@@ -252,11 +253,11 @@ void Simulation::reset_state(std::string_view material) {
   impl_->state.edited = true;
 }
 
-void Simulation::add(const NewBody& body) {
+void Simulation::add(const model::Body& body) {
   for (const BodyRange& b : impl_->state.bodies)
     if (b.name == body.name) fail_input("a body of the name {} is there already: give another", body.name);
   const std::size_t m = impl_->material(body.material);
-  const SceneDescription alone = with_only(scene(), body);
+  const model::Scene alone = with_only(scene(), body);
   const InitialState matter =
       impl_->with_engine([&](auto& engine) { return assemble(alone, scene().file(), engine.world().colliders); });
   const std::uint32_t first = impl_->insert(m, matter.seeds.at(m), fmt::format("body {}", body.name));
@@ -275,7 +276,7 @@ void Simulation::add_particles(std::string_view material, std::span<const Vec3d>
 
 void Simulation::add_particles(std::string_view material, std::span<const NewParticle> particles) {
   const std::size_t m = impl_->material(material);
-  const scene::Space& space = scene().description().space;
+  const model::Space& space = scene().model().space;
   std::vector<ParticleSeed> seeds;
   std::vector<Vec3d> positions;
   seeds.reserve(particles.size()), positions.reserve(particles.size());
@@ -283,7 +284,7 @@ void Simulation::add_particles(std::string_view material, std::span<const NewPar
     const auto& [p, v, gradient] = one;
     if (!is_finite(v) || !std::all_of(gradient.begin(), gradient.end(), [](const Vec3d& g) { return is_finite(g); }))
       fail_input("add_particles: velocities and their gradients must be finite numbers");
-    if (!is_finite(p) || max(min(p, space.max), space.min) != p)
+    if (!is_finite(p) || max(min(p, space.end()), space.min) != p)
       fail_input("add_particles: a particle at ({:.4g}, {:.4g}, {:.4g}) m is outside of the walls", p.x, p.y, p.z);
     Mat3d c;
     for (int a = 0; a < 3; ++a)
@@ -304,21 +305,12 @@ void Simulation::add_particles(std::string_view material, std::span<const NewPar
   impl_->insert(m, std::move(seeds), "add_particles");
 }
 
-std::size_t Simulation::remove(const SceneShape& shape) {
-  // A shape is checked as that of a collider is, which may lie anywhere.
-  SceneDescription bare = scene().description();
-  for (const scene::Collider& c : bare.colliders) bare.render.looks.erase(c.name);
-  bare.colliders.clear();
-  for (scene::Body& body : bare.bodies) body.cut.clear();
-  bare.probes.clear();  // they may name colliders, as a cut may
-  bare.render.cut.reset();
-  const SceneDescription with = Scene(std::move(bare), scene().file())
-                                    .with({fmt::format("colliders.removed={{shape: {}}}", shape.text())})
-                                    .description();
+std::size_t Simulation::remove(const Shape& shape) {
+  check_shape(scene(), shape);
   std::size_t taken = 0;
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     const Meshes files(Meshes::Say::keep);
-    const auto region = make_region(with.colliders.at(0).shape, with.space.spacing, files.regions());
+    const auto region = make_region(shape, scene().spacing(), files.regions());
     World<R>& world = engine.world();
     engine.download(MatterFields::all);
     for (std::size_t s = 0; s < world.sets.size(); ++s) {

@@ -141,8 +141,10 @@ class Refinement {
 
 template <class R>
 void write_finer(const std::filesystem::path& file, const World<R>& coarse, const Motion<R>& motion,
-                 const scene::SceneDescription& scene, const std::string& scene_file, const ExpectedSpeed& expected) {
-  const InitialState start = assemble(scene, scene_file);
+                 const model::Scene& scene, const std::string& scene_file, const ExpectedSpeed& expected) {
+  model::Scene unwritten = scene;  // its start is yet to be written
+  unwritten.start.clear();
+  const InitialState start = assemble(unwritten, scene_file);
   World<R> empty = as_world<R>(start.world);
   std::vector<std::string> notes;
   for (std::size_t s = 0; s < empty.sets.size(); ++s)
@@ -157,9 +159,9 @@ void write_finer(const std::filesystem::path& file, const World<R>& coarse, cons
   write_start(file, engine.world(), engine.motion(), expected);
 }
 
-template void write_finer(const std::filesystem::path&, const World<float>&, const Motion<float>&,
-                          const scene::SceneDescription&, const std::string&, const ExpectedSpeed&);
+template void write_finer(const std::filesystem::path&, const World<float>&, const Motion<float>&, const model::Scene&,
+                          const std::string&, const ExpectedSpeed&);
 template void write_finer(const std::filesystem::path&, const World<double>&, const Motion<double>&,
-                          const scene::SceneDescription&, const std::string&, const ExpectedSpeed&);
+                          const model::Scene&, const std::string&, const ExpectedSpeed&);
 
 }  // namespace dreampm

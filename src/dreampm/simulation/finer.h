@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "dreampm/backend/motion.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/setup/assemble.h"
 #include "dreampm/state/world.h"
 
@@ -17,6 +17,6 @@ namespace dreampm {
 /// `scene_file` names the scene in messages. Throws InputError where there is no memory for them.
 template <class R>
 void write_finer(const std::filesystem::path& file, const World<R>& coarse, const Motion<R>& motion,
-                 const scene::SceneDescription& scene, const std::string& scene_file, const ExpectedSpeed& expected);
+                 const model::Scene& scene, const std::string& scene_file, const ExpectedSpeed& expected);
 
 }  // namespace dreampm

@@ -9,7 +9,7 @@ namespace dreampm {
 
 RgbImage render(const Simulation& simulation, const PictureOptions& options) {
   const Simulation::Impl& impl = SimulationAccess::impl(simulation);
-  SceneDescription scene = simulation.scene().description();
+  model::Scene scene = simulation.scene().model();
   scene.bodies.insert(scene.bodies.end(), impl.state.added.begin(), impl.state.added.end());
   RenderSettings settings = render_settings(scene);
   settings.width = options.width.value_or(settings.width);

@@ -9,7 +9,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/scene/problem.h"
+#include "dreampm/setup/place.h"
 
 namespace dreampm {
 namespace {
@@ -22,16 +22,16 @@ double samples_until(double time, double rate) { return std::floor(time * rate +
 }  // namespace
 
 template <class R>
-ProbeSet<R>::ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file) {
+ProbeSet<R>::ProbeSet(const model::Scene& scene, const InitialState& start, const std::string& file) {
   ProbeStart at{start.world, start.seeds, {}, scene.space.spacing, mesh_regions()};
   for (std::size_t b = 0; b < start.bodies.size(); ++b)
-    at.bodies.push_back({start.bodies[b].name, static_cast<std::size_t>(scene.bodies[b].material),
+    at.bodies.push_back({start.bodies[b].name, index_of(scene.materials, scene.bodies[b].material),
                          start.bodies[b].first_id, start.bodies[b].count});
   std::vector<std::string> errors;
-  for (const scene::Probe& p : scene.probes) try {
+  for (const model::Probe& p : scene.probes) try {
       all_.push_back({p.name, scene::probe_hash(scene, p), p.rate, make_probe<R>(p, at)});
     } catch (const InputError& e) {
-      errors.push_back(scene::Problem{file, p.mark.line, p.mark.column, e.what()}.text());
+      errors.push_back(fmt::format("{}: error: {}", place(file, scene, p), e.what()));
     }
   if (!errors.empty()) throw InputError(fmt::format("{}", fmt::join(errors, "\n")));
 }

@@ -22,7 +22,7 @@ class ProbeSet {
  public:
   /// Throws InputError with every probe that can measure nothing; `file` names the scene there.
   /// `start` must still hold its seeds.
-  ProbeSet(const SceneDescription& scene, const InitialState& start, const std::string& file);
+  ProbeSet(const model::Scene& scene, const InitialState& start, const std::string& file);
   std::size_t size() const { return all_.size(); }
   const std::string& name(std::size_t probe) const { return all_[probe].name; }
   /// Of its rows, without the time.

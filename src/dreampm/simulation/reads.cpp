@@ -30,15 +30,12 @@ std::vector<std::string> names_of(const List& list) {
   return names;
 }
 
-std::string_view word_of(WallType type) { return scene::wall_type_words().at(static_cast<std::size_t>(type)); }
-
 /// Throws InputError for a key that the material has not.
-const Param& param_of(const scene::Material& material, std::string_view key) {
-  if (const Param* p = material.info->find(key)) return *p;
+const Param& param_of(const model::Material& material, std::string_view key) {
+  if (const Param* p = info_of(material).find(key)) return *p;
   std::vector<std::string> keys;
-  for (const Param& p : material.info->params) keys.emplace_back(p.key);
-  fail_input("material {} ({}) has no parameter {}{}", material.name, material.info->name, key,
-             scene::suggest(key, keys));
+  for (const Param& p : info_of(material).params) keys.emplace_back(p.key);
+  fail_input("material {} ({}) has no parameter {}{}", material.name, material.type, key, scene::suggest(key, keys));
 }
 
 struct Attribute {
@@ -58,7 +55,7 @@ void fail_unknown(std::string_view kind, std::string_view name, const std::vecto
 // ---- what there is
 
 Names Simulation::names() const {
-  const SceneDescription& scene = impl_->state.scene.description();
+  const model::Scene& scene = impl_->state.scene.model();
   Names all;
   all.materials = names_of(scene.materials), all.bodies = names_of(impl_->state.bodies);
   all.emitters = names_of(scene.emitters), all.sinks = names_of(scene.sinks);
@@ -114,10 +111,10 @@ Stepping Simulation::stepping() const {
 // ---- particles
 
 std::vector<std::string> Simulation::attributes(std::string_view material) const {
-  const scene::Material& m = scene().description().materials[impl_->material(material)];
+  const model::Material& m = scene().model().materials[impl_->material(material)];
   std::vector<std::string> names;
   for (const Attribute& a : common_attributes) names.emplace_back(a.name);
-  for (std::string& other : other_columns(m.info->name)) names.push_back(std::move(other));
+  for (std::string& other : other_columns(m.type)) names.push_back(std::move(other));
   return names;
 }
 
@@ -190,25 +187,25 @@ BodyState Simulation::body(std::string_view name) const {
   const auto range =
       std::find_if(state.bodies.begin(), state.bodies.end(), [&](const BodyRange& b) { return b.name == name; });
   if (range == state.bodies.end()) fail_unknown("body", name, names_of(state.bodies));
-  const SceneDescription& scene = state.scene.description();
+  const model::Scene& scene = state.scene.model();
   BodyState body{{}, range->first_id, range->count, range->color};
-  for (const std::vector<scene::Body>* list : {&scene.bodies, &state.added})
-    for (const scene::Body& b : *list)
-      if (b.name == name) body.material = scene.materials.at(static_cast<std::size_t>(b.material)).name;
+  for (const std::vector<model::Body>* list : {&scene.bodies, &state.added})
+    for (const model::Body& b : *list)
+      if (b.name == name) body.material = b.material;
   return body;
 }
 
 // ---- materials
 
 double Simulation::parameter(std::string_view material, std::string_view key) const {
-  const scene::Material& m = scene().description().materials[impl_->material(material)];
+  const model::Material& m = scene().model().materials[impl_->material(material)];
   return m.values[param_of(m, key).key];
 }
 
 std::vector<Parameter> Simulation::parameters(std::string_view material) const {
-  const scene::Material& m = scene().description().materials[impl_->material(material)];
+  const model::Material& m = scene().model().materials[impl_->material(material)];
   std::vector<Parameter> all;
-  for (const Param& p : m.info->params) {
+  for (const Param& p : info_of(m).params) {
     Parameter& one = all.emplace_back(Parameter{p.key, p.unit, m.values[p.key], p.min, p.max, p.help, p.log, {}, {}});
     for (const Word& word : p.words) one.words.emplace_back(word.name, word.value);
     one.words_only = p.words_only;
@@ -218,11 +215,11 @@ std::vector<Parameter> Simulation::parameters(std::string_view material) const {
 
 MaterialState Simulation::material(std::string_view name, std::span<const ParameterValue> with) const {
   const std::size_t m = impl_->material(name);
-  const scene::Material& own = scene().description().materials[m];
-  MaterialState state{own.info->name, own.info->liquid};
+  const model::Material& own = scene().model().materials[m];
+  MaterialState state{own.type, info_of(own).liquid};
   const auto take = [&](const auto& set) {
     state.particle_mass = set.mass, state.particle_volume = set.rest_volume;
-    const MaterialFacts facts = facts_of(*own.info, set.values);
+    const MaterialFacts facts = facts_of(info_of(own), set.values);
     state.sound_speed = facts.sound_speed, state.kinematic_viscosity = facts.kinematic_viscosity;
     state.poissons_ratio = facts.poissons_ratio;
   };
@@ -230,7 +227,7 @@ MaterialState Simulation::material(std::string_view name, std::span<const Parame
     impl_->with_engine([&](auto& engine) { take(engine.world().sets[m]); });
     return state;
   }
-  scene::Material other = own;
+  model::Material other = own;
   for (const ParameterValue& v : with) other.values.set(param_of(own, v.key).key, v.value);
   ParticleSet<double> set;
   set.rest_volume = std::pow(scene().spacing(), 3);
@@ -246,11 +243,8 @@ Vec3d Simulation::gravity() const {
   return impl_->with_engine([](auto& engine) { return engine.world().gravity_at(engine.world().time); });
 }
 
-WallState Simulation::wall(Side side) const {
-  return impl_->with_engine([&](auto& engine) {
-    const Wall& wall = engine.world().walls.at(static_cast<std::size_t>(side));
-    return WallState{word_of(wall.type), wall.friction, wall.skin_friction};
-  });
+Wall Simulation::wall(Side side) const {
+  return impl_->with_engine([&](auto& engine) { return engine.world().walls.at(index(side)); });
 }
 
 struct ColliderShape::Data {
@@ -295,7 +289,7 @@ ColliderState Simulation::collider(std::string_view name) const {
     const Impl::Received& received = impl_->received;
     if (number < received.impulse.size() && received.seconds > 0)
       state.force = received.impulse[number] / -received.seconds;
-    state.type = word_of(c.contact()), state.friction = c.friction, state.slack = c.slack;
+    state.type = c.contact(), state.friction = c.friction, state.slack = c.slack;
     state.is_rigid = c.rigid, state.moves = c.moves(), state.deforms = c.changing != nullptr;
     return state;
   });
@@ -323,11 +317,12 @@ std::vector<ColliderShape> Simulation::collider_shapes() const {
 }
 
 TriMesh Simulation::collider_mesh(std::string_view name) const {
-  const SceneDescription& scene = impl_->state.scene.description();
+  const model::Scene& scene = impl_->state.scene.model();
   const auto c = std::find_if(scene.colliders.begin(), scene.colliders.end(),
-                              [&](const scene::Collider& one) { return one.name == name; });
+                              [&](const model::Collider& one) { return one.name == name; });
   if (c == scene.colliders.end()) fail_unknown("collider", name, names_of(scene.colliders));
-  return dreampm::collider_mesh(c->shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.max}, {}, c->thickness);
+  return dreampm::collider_mesh(c->shape, 0.5 * scene.space.dx(), {scene.space.min, scene.space.end()}, {},
+                                c->thickness);
 }
 
 std::optional<Grip> Simulation::grip(std::string_view rigid) const {
@@ -341,7 +336,7 @@ std::optional<Grip> Simulation::grip(std::string_view rigid) const {
 std::optional<Stroke> Simulation::brush(std::string_view name) const {
   return impl_->with_engine([&](auto& engine) -> std::optional<Stroke> {
     const std::vector<ForceField>& fields = engine.world().fields;
-    for (std::size_t f = scene().description().fields.size(); f < fields.size(); ++f)
+    for (std::size_t f = scene().model().fields.size(); f < fields.size(); ++f)
       if (const Brush* b = std::get_if<Brush>(&fields[f].field); b && fields[f].name == name)
         return Stroke{b->point, b->radius, b->velocity, b->rate};
     return std::nullopt;

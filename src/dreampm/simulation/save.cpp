@@ -18,7 +18,7 @@ namespace dreampm {
 
 void Simulation::save(const std::filesystem::path& file) const {
   if (file.extension() != ".yaml") fail_input("save: {} must end in .yaml", file.string());
-  SceneDescription now = scene().description();
+  model::Scene now = scene().model();
   now.name = file.stem().string();
   if (!scene::good_name(now.name))
     fail_input("save: {}: the scene's name, '{}', must be {}", file.string(), now.name, scene::good_name_rule);
@@ -40,7 +40,8 @@ void Simulation::save(const std::filesystem::path& file) const {
       if (!scene::good_name(name))
         fail_input("save: the brush '{}' becomes a field of the scene, whose name must be {}", name,
                    scene::good_name_rule);
-      now.fields.push_back({world.fields[f], {}});
+      model::ForceField& field = now.fields.emplace_back(as_model(world.fields[f].field));
+      field.name = name, field.box = world.fields[f].box;
     }
     // The motion that a program set is in the moment; a scene has no word for it.
     for (std::size_t c = 0; c < world.colliders.size(); ++c)
@@ -61,9 +62,9 @@ void Simulation::save_moment(const std::filesystem::path& file) const {
 }
 
 void Simulation::save_moment(const std::filesystem::path& file, const Scene& finer) const {
-  const SceneDescription &own = scene().description(), &other = finer.description();
+  const model::Scene &own = scene().model(), &other = finer.model();
   const bool fits = other.space.spacing == own.space.spacing / 2 && other.space.min == own.space.min &&
-                    other.space.max == own.space.max && finer.materials() == scene().materials() &&
+                    other.space.end() == own.space.end() && finer.materials() == scene().materials() &&
                     other.colliders.size() == own.colliders.size() && other.emitters.size() == own.emitters.size();
   if (!fits)
     fail_input("save_moment: {} must be {} with space.spacing {:.6g} m, half of what it is, and all else as it is",

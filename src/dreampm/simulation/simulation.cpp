@@ -68,21 +68,21 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& given)
       threads_(std::make_unique<ThreadArena>(options.threads)) {
   threads_->run([&] {
     const HostScope scope(host_);
-    InitialState start = assemble(scene.description(), scene.file());
+    InitialState start = assemble(scene.model(), scene.file());
     for (const std::string& w : start.warnings) warn("{}", w);
     for (const std::string& n : start.notes) info("{}", n);
     const auto make = [&]<class R>(std::unique_ptr<Backend<R>> backend) {
       auto engine = std::make_unique<Engine<R>>(as_world<R>(start.world), std::move(backend));
-      ProbeSet<R> probes(scene.description(), start, scene.file());
+      ProbeSet<R> probes(scene.model(), start, scene.file());
       for (std::size_t p = 0; p < probes.size(); ++p) state.probes.push_back({probes.columns(p), {}, {}});
       auto relay = std::make_shared<Relay<R>>(*this, *engine, std::move(probes));
       engine->add(*relay);
-      begin(*engine, start, scene.description());
-      check_fixed_dt(engine->world(), start.seeds, scene.description().time, scene.file());
-      identity = fmt::format("{} {} {}", scene::scene_hash(scene.description(), scene::Part::simulation),
+      begin(*engine, start, scene.model());
+      check_fixed_dt(engine->world(), start.seeds, scene.model(), scene.file());
+      identity = fmt::format("{} {} {}", scene::scene_hash(scene.model(), scene::Part::simulation),
                              engine->backend().name(), engine->backend().isa());
-      for (const scene::Probe& p : scene.description().probes)
-        identity += fmt::format(" {}", scene::probe_hash(scene.description(), p));
+      for (const model::Probe& p : scene.model().probes)
+        identity += fmt::format(" {}", scene::probe_hash(scene.model(), p));
       relay->sample_probes(true);
       engine_ = std::move(engine);
       relay_ = std::shared_ptr<Observer<R>>(std::move(relay));
@@ -110,8 +110,8 @@ std::uint32_t Simulation::Impl::first_free_id() const {
 }
 
 std::size_t Simulation::Impl::material(std::string_view name) const {
-  const std::vector<scene::Material>& all = state.scene.description().materials;
-  const auto at = std::find_if(all.begin(), all.end(), [&](const scene::Material& m) { return m.name == name; });
+  const std::vector<model::Material>& all = state.scene.model().materials;
+  const auto at = std::find_if(all.begin(), all.end(), [&](const model::Material& m) { return m.name == name; });
   if (at == all.end()) fail_unknown("material", name, state.scene.materials());
   return static_cast<std::size_t>(at - all.begin());
 }
@@ -145,11 +145,11 @@ StepReport Simulation::Impl::report(const StepSums& sums) const {
 const ParticleFrame& Simulation::Impl::frame() const {
   if (!frame_)
     frame_ = with_engine([&](auto& engine) {
-      const auto& description = state.scene.description();
+      const auto& description = state.scene.model();
       engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
-      const scene::Space& space = description.space;
+      const model::Space& space = description.space;
       return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"},
-                            file_shift(space.min, space.max, space.spacing));
+                            file_shift(space.min, space.end(), space.spacing));
     });
   return *frame_;
 }
@@ -234,8 +234,8 @@ std::size_t Simulation::particle_count(std::string_view material) const {
 namespace {
 
 /// Linear: the color of a look, or of clear matter what a layer of it lets through.
-Vec3f color_of(const scene::Look& look) {
-  if (look.type != scene::LookType::dielectric) return linear_color(look.color);
+Vec3f color_of(const model::Look& look) {
+  if (look.type != model::LookType::dielectric) return linear_color(look.color);
   return light_through(look.absorption);
 }
 
@@ -252,7 +252,7 @@ std::shared_ptr<const Simulation::Impl::View> Simulation::Impl::view(std::size_t
     std::vector<Vec3f> position(n);
     particles.for_each([&](std::size_t p, const Vec3d& x) { position[p] = static_cast<Vec3f>(x); });
     view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
-    view.color.assign(n, color_of(state.scene.description().render.looks.at(engine.world().sets[m].name)));
+    view.color.assign(n, color_of(state.scene.model().render.looks.at(engine.world().sets[m].name)));
     std::size_t i = 0;
     for (const std::uint32_t p : order_of(particles.ids())) {
       view.id[i] = particles.id(p);
@@ -294,7 +294,7 @@ Totals Simulation::totals() const {
 }
 
 const ProbeSeries& Simulation::probe(std::string_view name) const {
-  const std::vector<scene::Probe>& probes = impl_->state.scene.description().probes;
+  const std::vector<model::Probe>& probes = impl_->state.scene.model().probes;
   for (std::size_t p = 0; p < probes.size(); ++p)
     if (probes[p].name == name) return impl_->state.probes[p];
   fail_unknown("probe", name, names().probes);
@@ -363,7 +363,7 @@ std::uint64_t Snapshot::bytes() const {
 TriMesh Simulation::surface(std::string_view material, const SurfaceOptions& options) const {
   const std::size_t m = impl_->material(material);
   const ParticleFrame& frame = impl_->frame();
-  const SceneDescription& description = scene().description();
+  const model::Scene& description = scene().model();
   const MaterialParticles particles = particles_of(description, static_cast<int>(m), frame);
   SurfaceSettings settings = surface_settings(description);
   settings.keep_field = false;

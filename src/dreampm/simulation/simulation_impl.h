@@ -30,7 +30,7 @@ struct EditSums {
 struct SimulationState {
   Scene scene;  ///< with all edits so far
   std::vector<BodyRange> bodies;
-  std::vector<scene::Body> added;  ///< bodies that the scene has not
+  std::vector<model::Body> added;  ///< bodies that the scene has not
   ExpectedSpeed expected;
   std::uint32_t next_id = 0;
   EditSums edits;
@@ -74,8 +74,15 @@ struct Simulation::Impl {
     }
   }
 
-  /// Lays the values over the scene as it is. Throws InputError, for what its solver cannot do too.
-  Scene edited_scene(const std::vector<std::string>& set) const;
+  /// The scene as it is with a change of its model. Throws InputError for what `check` refuses, and
+  /// for what its solver cannot do.
+  template <class Change>
+  Scene edited(const Change& change) const {
+    model::Scene next = state.scene.model();
+    change(next);
+    return checked(std::move(next));
+  }
+  Scene checked(model::Scene next) const;
   /// Above those of all particles.
   std::uint32_t first_free_id() const;
   /// The number of a material of the scene. Throws InputError.

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "dreampm/geometry/mesh.h"
-#include "dreampm/geometry/shape.h"
 #include "dreampm/math/mat3.h"
 #include "dreampm/physics/spring.h"
+#include "dreampm/shape.h"
 #include "dreampm/state/collider.h"
 
 namespace dreampm {

@@ -12,6 +12,7 @@
 
 #include "dreampm/base/large_vector.h"
 #include "dreampm/math/keyframes.h"
+#include "dreampm/model/space.h"
 #include "dreampm/physics/dt.h"
 #include "dreampm/physics/fields.h"
 #include "dreampm/physics/param.h"
@@ -21,7 +22,6 @@
 #include "dreampm/state/grid.h"
 #include "dreampm/state/inflow.h"
 #include "dreampm/state/rigid_body.h"
-#include "dreampm/state/solver_kind.h"
 
 namespace dreampm {
 
@@ -55,12 +55,6 @@ struct ParticleSet {
   bool has_own() const { return carries_motion || transfer.keeps_velocity(); }
   /// The edge of the cube that a particle takes at rest [m].
   double spacing() const { return std::cbrt(rest_volume); }
-};
-
-struct Wall {
-  WallType type = WallType::separate;
-  double friction = 0;         ///< Coulomb's coefficient, for solids and grains
-  bool skin_friction = false;  ///< whether liquids feel its boundary layer (physics/contact.h:skin_drag)
 };
 
 /// Times and limits of the steps; they decide the future and so are state.

@@ -12,10 +12,10 @@ namespace {
 constexpr double a = 0.01, k = std::numbers::pi;  // amplitude [m]; wave number of a bar of 1 m
 
 /// The wave speed of the scene's one material in its rest state [m/s], from its own law.
-double sound_speed(const SceneDescription& scene) {
-  const scene::Material& m = scene.materials.at(0);
+double sound_speed(const model::Scene& scene) {
+  const model::Material& m = scene.materials.at(0);
   double speed = 0;
-  Materials::with(m.info->name, [&]<class M>() {
+  Materials::with(m.type, [&]<class M>() {
     typename M::template State<double> rest;
     for (int c = 0; c < state_columns<M>; ++c) rest[c] = M::template State<double>::rest[c];
     speed = M::template Law<double>::from(m.values).respond(rest).sound_speed;

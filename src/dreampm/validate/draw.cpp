@@ -181,7 +181,7 @@ Outline outline(Dice& dice, std::uint64_t seed, int index) {
   return o;
 }
 
-SceneDescription parsed(const std::string& text, const std::string& name) {
+model::Scene parsed(const std::string& text, const std::string& name) {
   scene::ParseResult result = scene::parse_scene_text(text, name, {.variant = {}, .overrides = {}, .assets = {}});
   if (!result.ok()) throw InputError(result.text());
   return std::move(result.scene);
@@ -245,14 +245,14 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
   // Nearly all that the parser takes.
   const double drawn = largest_cfl * (1 - 0.95 * dice.between(0, 1));
   const std::string cfl = shown(asked_cfl > 0 ? std::min(asked_cfl, largest_cfl) : drawn);
-  const SceneDescription first = parsed(o.with(100, 1, cfl), name);
+  const model::Scene first = parsed(o.with(100, 1, cfl), name);
   const InitialState start = assemble(first, name);
   const World<double>& world = start.world;
 
   // It goes on falling through its room, and through an open floor as far again before it is taken
   // out, and a block.
-  const double room = first.space.max.y - first.space.min.y;
-  const bool out = first.space.walls[scene::y_min].type == WallType::open;
+  const double room = first.space.end().y - first.space.min.y;
+  const bool out = first.space.walls[dreampm::index(Side::y_min)].type == WallType::open;
   const double fall = std::sqrt(o.fall * o.fall + 2 * g * (out ? 2 * room + block_width * world.dx : room));
   double mass = 0, least = 1e30;
   for (std::size_t i = 0; i < world.sets.size(); ++i) {

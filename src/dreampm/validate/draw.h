@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <string>
 
+#include "dreampm/model/scene.h"
 #include "dreampm/physics/dt.h"
-#include "dreampm/scene/description.h"
 
 namespace dreampm::validate {
 
 /// A scene by chance, and what its run is held to.
 struct Draw {
   std::string text;  ///< the scene, for `dreampm run`
-  SceneDescription scene;
+  model::Scene scene;
   double fall = 0;  ///< m/s, of matter that fell from the draw's height, at most 1 m, and through its room or out of it
   double dt_floor = 0;  ///< s, no step may be shorter
 };

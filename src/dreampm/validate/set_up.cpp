@@ -22,7 +22,7 @@ const char* name_of(Pattern pattern) {
   }
 }
 
-std::string text_of(const scene::Wall& wall, bool periodic) {
+std::string text_of(const Wall& wall, bool periodic) {
   if (periodic) return "periodic";
   std::string s = wall.type == WallType::separate ? "separate"
                   : wall.type == WallType::slip   ? "slip"
@@ -35,11 +35,11 @@ std::string text_of(const scene::Wall& wall, bool periodic) {
 
 /// "floor, x_min slip with skin friction; the others slip": walls that do the same stand together,
 /// most of them last.
-std::string walls_of(const scene::Space& space) {
+std::string walls_of(const model::Space& space) {
   std::vector<std::pair<std::string, std::vector<std::string>>> groups;
   for (std::size_t i = 0; i < space.walls.size(); ++i) {
     const std::string text = text_of(space.walls[i], space.periodic[i / 2]);
-    const std::string name = i == scene::y_min ? "floor" : i == scene::y_max ? "ceiling" : scene::wall_names[i];
+    const std::string name(i == index(Side::y_min) ? "floor" : i == index(Side::y_max) ? "ceiling" : side_names[i]);
     auto it = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == text; });
     if (it == groups.end()) it = groups.insert(groups.end(), {text, {}});
     it->second.push_back(name);
@@ -61,17 +61,17 @@ std::string walls_of(const scene::Space& space) {
 
 }  // namespace
 
-std::string set_up_of(const SceneDescription& scene, const World<double>& start) {
-  const scene::Space& space = scene.space;
+std::string set_up_of(const model::Scene& scene, const World<double>& start) {
+  const model::Space& space = scene.space;
   std::string s;
   const bool projected = scene.time.solver == SolverKind::projection;
-  for (const scene::Body& body : scene.bodies) {
-    const auto& set = start.sets[static_cast<std::size_t>(body.material)];
+  for (const model::Body& body : scene.bodies) {
+    const auto& set = start.sets[index_of(scene.materials, body.material)];
     const double sound = facts_of(*find_material(set.material), set.values).sound_speed;
     s += fmt::format("{} ({}{}) {}, ", body.name, set.material,
                      projected ? "" : fmt::format(", sound {:.3g} m/s", sound), name_of(body.pattern));
   }
-  for (const scene::Collider& c : scene.colliders)
+  for (const model::Collider& c : scene.colliders)
     if (c.rigid)
       s += c.rigid->density ? fmt::format("{} (rigid, {:.4g} kg/m^3), ", c.name, *c.rigid->density)
                             : fmt::format("{} (rigid, {:.4g} kg), ", c.name, c.rigid->mass.value_or(0));

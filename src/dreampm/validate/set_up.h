@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm::validate {
@@ -11,6 +11,6 @@ namespace dreampm::validate {
 /// density, cells, walls and steps. As the scene has them, so that the page of results cannot say
 /// anything else than what was run.
 /// `start`: assembled from it.
-std::string set_up_of(const SceneDescription& scene, const World<double>& start);
+std::string set_up_of(const model::Scene& scene, const World<double>& start);
 
 }  // namespace dreampm::validate

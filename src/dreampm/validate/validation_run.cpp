@@ -38,7 +38,7 @@ std::vector<std::string> by_projection(std::string_view body, const std::vector<
   return all;
 }
 
-SceneDescription built_in_scene(std::string_view name, const std::vector<std::string>& overrides) {
+model::Scene built_in_scene(std::string_view name, const std::vector<std::string>& overrides) {
   const std::string file = "scenes/validation/" + std::string(name) + ".yaml";
   scene::ParseResult result =
       scene::parse_scene_text(scene_text(name), file, {.variant = {}, .overrides = overrides, .assets = {}});

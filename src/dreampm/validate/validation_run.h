@@ -25,7 +25,7 @@ std::vector<std::string> scene_names();
 Table reference_table(std::string_view name);
 
 /// Parses a built-in scene; `overrides` as with --set. Throws InputError.
-SceneDescription built_in_scene(std::string_view name, const std::vector<std::string>& overrides = {});
+model::Scene built_in_scene(std::string_view name, const std::vector<std::string>& overrides = {});
 
 /// What makes a scene of water run by the projection, on particles that do not lie in a lattice.
 std::vector<std::string> by_projection(std::string_view body, const std::vector<std::string>& more = {});
@@ -47,7 +47,7 @@ class ValidationRun {
  public:
   ValidationRun(Trial& trial, std::string_view scene, const std::vector<std::string>& overrides = {})
       : ValidationRun(trial, built_in_scene(scene, overrides)) {}
-  ValidationRun(Trial& trial, const SceneDescription& scene)
+  ValidationRun(Trial& trial, const model::Scene& scene)
       : trial_(trial),
         start_(assemble(scene, scene.name)),
         engine_(std::make_unique<Engine<R>>(as_world<R>(start_.world), make_backend())),

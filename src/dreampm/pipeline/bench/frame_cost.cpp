@@ -1,13 +1,12 @@
 #include "dreampm/pipeline/bench/frame_cost.h"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <filesystem>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/file.h"
 #include "dreampm/pictures/frames.h"
+#include "dreampm/pipeline/bench/temporary_folder.h"
 #include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/probes.h"
 
@@ -22,20 +21,6 @@ double seconds_of(const F& f) {
   f();
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-class TemporaryFolder {
- public:
-  TemporaryFolder() : path(fs::temp_directory_path() / ("dreampm-bench-" + std::to_string(::getpid()))) {
-    make_folder(path);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a destructor may not throw; the folder lies among temporary files
-    fs::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path path;
-};
 
 /// The world without its particles, as probes want to see it before the start.
 InitialState start_of(const World<float>& world) {
@@ -54,8 +39,8 @@ InitialState start_of(const World<float>& world) {
 }
 
 /// A surface height, a wall's pressure and a wall's force: what a dam break asks for.
-SceneDescription probed(const World<float>& world) {
-  SceneDescription scene;
+model::Scene probed(const World<float>& world) {
+  model::Scene scene;
   scene.space.spacing = world.dx / 2;
   const Vec3d far = world.node_position(world.high);
   scene.probes.push_back({"height", 0, HeightProbe{far.x / 4, far.z / 2}});
@@ -63,7 +48,7 @@ SceneDescription probed(const World<float>& world) {
   pressure.at = {far.x / 4, 0, far.z / 2}, pressure.normal = {0, 1, 0}, pressure.radius = 2 * world.dx;
   scene.probes.push_back({"pressure", 0, pressure});
   ForceProbe force;
-  force.on = "floor", force.wall = 2;
+  force.on = "floor";
   scene.probes.push_back({"force", 0, force});
   return scene;
 }
@@ -75,7 +60,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   World<float> world = course.world();
   backend->attach(world);
   const TemporaryFolder folder;
-  const SceneDescription scene = probed(world);
+  const model::Scene scene = probed(world);
   const InitialState start = start_of(world);
   ProbeFiles<float> probes(scene, start, scene.name, folder.path / "probes");
   probes.begin();

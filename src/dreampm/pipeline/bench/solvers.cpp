@@ -15,14 +15,14 @@ namespace {
 
 class Turn {
  public:
-  Turn(SceneDescription scene, SolverKind solver) {
+  Turn(model::Scene scene, SolverKind solver) {
     scene.time.solver = solver;
-    for (scene::Body& b : scene.bodies) b.pattern = Pattern::jitter;
+    for (model::Body& b : scene.bodies) b.pattern = Pattern::jitter;
     if (solver == SolverKind::projection) {
       scene.time.cfl = usual_projection_cfl;
-      for (scene::Material& m : scene.materials) m.transfer = Apic{};
+      for (model::Material& m : scene.materials) m.transfer = "apic", m.transfer_values = {};
     } else if (scene.time.cfl > largest_cfl) {
-      scene.time.cfl = scene::Time{}.cfl;
+      scene.time.cfl = model::Time{}.cfl;
     }
     const InitialState start = assemble(scene, scene.name);
     engine_ = std::make_unique<Engine<float>>(as_world<float>(start.world), make_cpu_backend());
@@ -44,7 +44,7 @@ class Turn {
 
 }  // namespace
 
-SolversCost bench_solvers(const SceneDescription& scene, int frames,
+SolversCost bench_solvers(const model::Scene& scene, int frames,
                           const std::function<void(int, const SolversCost&)>& each) {
   const ThreadLimit one(1);
   Turn projection(scene, SolverKind::projection), explicit_steps(scene, SolverKind::explicit_steps);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "dreampm/scene/description.h"
+#include "dreampm/model/scene.h"
 
 namespace dreampm {
 
@@ -22,7 +22,7 @@ struct SolversCost {
 /// machine does falls on both, on one thread. Both with jittered particles; the projection with its
 /// usual steps and transfer, the explicit solver as the scene says. `each(frame, cost)` after every
 /// frame of both. Throws InputError for a scene that the projection cannot do.
-SolversCost bench_solvers(const SceneDescription& scene, int frames,
+SolversCost bench_solvers(const model::Scene& scene, int frames,
                           const std::function<void(int, const SolversCost&)>& each = {});
 
 }  // namespace dreampm

@@ -13,6 +13,7 @@
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/projection/time_step.h"
+#include "dreampm/pipeline/bench/bench_mesh.h"
 #include "dreampm/pipeline/bench/moment.h"
 #include "dreampm/pipeline/bench/scenes.h"
 
@@ -23,39 +24,14 @@ namespace {
 constexpr int explicit_steps = 40, large_steps = 8;
 /// s: a cell at the speed of the tap is a step of the projection.
 constexpr double large_step = 0.01;
-constexpr double tap_speed = 2;    ///< m/s
+constexpr double tap_speed = 2;  ///< m/s
+constexpr int rotor_faces = 4512;
 constexpr double rotor_speed = 1;  ///< m/s, of its rim
 
 std::shared_ptr<const Region> box(const Vec3d& low, const Vec3d& high) {
   Shape shape;
   shape.form = BoxShape{high - low}, shape.center = (low + high) * 0.5;
   return make_region(shape, bench_dx, {});
-}
-
-/// A ball with three lobes about the axis y, of 4,512 faces.
-TriMesh lobed_ball(const Vec3d& middle, double radius) {
-  constexpr std::uint32_t rows = 48, columns = 48;
-  TriMesh mesh;
-  const auto add = [&](std::uint32_t i, std::uint32_t j) {
-    const double theta = std::numbers::pi * i / rows, phi = 2 * std::numbers::pi * j / columns;
-    const double r = radius * (1 + 0.2 * std::sin(theta) * std::cos(3 * phi)) / 1.2;
-    mesh.vertices.push_back(static_cast<Vec3f>(
-        middle + Vec3d{std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi)} * r));
-  };
-  add(0, 0);
-  for (std::uint32_t i = 1; i < rows; ++i)
-    for (std::uint32_t j = 0; j < columns; ++j) add(i, j);
-  add(rows, 0);
-  const std::uint32_t last = static_cast<std::uint32_t>(mesh.vertices.size()) - 1;
-  const auto at = [&](std::uint32_t i, std::uint32_t j) {
-    return i == 0 ? 0 : i == rows ? last : 1 + (i - 1) * columns + j % columns;
-  };
-  for (std::uint32_t i = 0; i < rows; ++i)
-    for (std::uint32_t j = 0; j < columns; ++j) {
-      if (i > 0) mesh.triangles.push_back({at(i, j), at(i + 1, j), at(i, j + 1)});
-      if (i + 1 < rows) mesh.triangles.push_back({at(i, j + 1), at(i + 1, j), at(i + 1, j + 1)});
-    }
-  return mesh;
 }
 
 /// What the taps are placed by: the matter reaches from 0 to `size`, the box up to `top` [m].
@@ -88,7 +64,7 @@ void add_rotor(BenchScene& scene, const Room& room) {
   const double radius = 0.35 * std::min({room.size.x, room.size.y, room.size.z});
   Collider rotor;
   rotor.name = "rotor";
-  rotor.shape = mesh_region(lobed_ball(middle, radius), 0.5 * w.dx, rotor.name);
+  rotor.shape = mesh_region(lobed_ball(middle, radius, rotor_faces), 0.5 * w.dx, rotor.name);
   rotor.twist = {{}, {0, rotor_speed / radius, 0}, middle};
   std::erase_if(scene.seeds[0], [&](const ParticleSeed& s) { return rotor.distance(s.position) < 0.25 * w.dx; });
   w.colliders.push_back(std::move(rotor));

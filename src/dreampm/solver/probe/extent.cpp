@@ -42,7 +42,7 @@ class Extent final : public Probe<R> {
     std::map<int, Slab> slabs;
     Box3d reach;
     for (std::size_t s = 0; s < w.sets.size(); ++s) {
-      if (material_ >= 0 && static_cast<std::size_t>(material_) != s) continue;
+      if (!material_.empty() && w.sets[s].name != material_) continue;
       const double half = edge_of(w.sets[s]) / 2;
       now.particles(s).for_each([&](std::size_t p, const Vec3d& x) {
         Slab& slab = slabs[static_cast<int>(std::floor((x[axis_] - w.origin[axis_]) / w.dx))];
@@ -70,7 +70,8 @@ class Extent final : public Probe<R> {
   }
 
  private:
-  int axis_, material_;
+  int axis_;
+  std::string material_;  ///< empty: all
 };
 
 }  // namespace

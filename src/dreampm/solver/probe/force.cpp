@@ -8,14 +8,14 @@ namespace {
 template <class R>
 class Force final : public Probe<R> {
  public:
-  explicit Force(const ForceProbe& spec) : wall_(spec.wall), collider_(spec.collider) {}
+  Force(const ForceProbe& spec, const ProbeStart& start)
+      : wall_(side_called(spec.on)), collider_(wall_ ? 0 : model::index_of(start.world.colliders, spec.on)) {}
 
   std::vector<std::string> columns() const override { return {"fx", "fy", "fz", "tx", "ty", "tz"}; }
   MatterFields fields() const override { return MatterFields::none; }
 
   void accumulate(const StepSums& step) override {
-    const ImpulseSum& p = wall_ >= 0 ? step.grid.walls.at(static_cast<std::size_t>(wall_))
-                                     : step.grid.colliders.at(static_cast<std::size_t>(collider_));
+    const ImpulseSum& p = wall_ ? step.grid.walls.at(index(*wall_)) : step.grid.colliders.at(collider_);
     // The matter got p; the wall gets the opposite.
     impulse_ -= p.impulse;
     angular_ -= p.angular;
@@ -40,7 +40,8 @@ class Force final : public Probe<R> {
   }
 
  private:
-  int wall_, collider_;
+  std::optional<Side> wall_;
+  std::size_t collider_;
   Vec3d impulse_{}, angular_{};
   double duration_ = 0;
 };
@@ -48,8 +49,8 @@ class Force final : public Probe<R> {
 }  // namespace
 
 template <class R>
-std::unique_ptr<Probe<R>> make_one(const ForceProbe& spec, const std::string&, const ProbeStart&) {
-  return std::make_unique<Force<R>>(spec);
+std::unique_ptr<Probe<R>> make_one(const ForceProbe& spec, const std::string&, const ProbeStart& start) {
+  return std::make_unique<Force<R>>(spec, start);
 }
 template std::unique_ptr<Probe<float>> make_one(const ForceProbe&, const std::string&, const ProbeStart&);
 template std::unique_ptr<Probe<double>> make_one(const ForceProbe&, const std::string&, const ProbeStart&);

@@ -1,5 +1,7 @@
 // What comes in by an emitter or goes out by a sink: rate [m^3/s] as the mean since the row before,
 // total [m^3] since the start, as volume at rest, and the count of particles.
+#include <algorithm>
+
 #include "dreampm/solver/probe/probe.h"
 
 namespace dreampm {
@@ -8,7 +10,12 @@ namespace {
 template <class R>
 class Inflow final : public Probe<R> {
  public:
-  explicit Inflow(const InflowProbe& spec) : emitter_(spec.emitter), sink_(spec.sink) {}
+  Inflow(const InflowProbe& spec, const ProbeStart& start) {
+    const auto is_it = [&](const auto& one) { return one.name == spec.on; };
+    is_emitter_ = std::any_of(start.world.emitters.begin(), start.world.emitters.end(), is_it);
+    number_ =
+        is_emitter_ ? model::index_of(start.world.emitters, spec.on) : model::index_of(start.world.sinks, spec.on);
+  }
 
   std::vector<std::string> columns() const override { return {"rate", "total", "count"}; }
   MatterFields fields() const override { return MatterFields::none; }
@@ -17,8 +24,8 @@ class Inflow final : public Probe<R> {
     const World<R>& world = now.world;
     // All sets of a scene have particles of one size.
     const double each = world.sets.at(0).rest_volume;
-    const auto count = static_cast<double>(emitter_ >= 0 ? world.emitters.at(static_cast<std::size_t>(emitter_)).born
-                                                         : world.sinks.at(static_cast<std::size_t>(sink_)).taken);
+    const auto count =
+        static_cast<double>(is_emitter_ ? world.emitters.at(number_).born : world.sinks.at(number_).taken);
     const double dt = world.time - time_, passed = (count - count_) * each;
     time_ = world.time, count_ = count;
     if (!(dt > 0)) return std::nullopt;
@@ -29,15 +36,16 @@ class Inflow final : public Probe<R> {
   void restore(const std::vector<double>& m) override { time_ = m.at(0), count_ = m.at(1); }
 
  private:
-  int emitter_, sink_;
+  bool is_emitter_ = false;
+  std::size_t number_ = 0;
   double time_ = 0, count_ = 0;
 };
 
 }  // namespace
 
 template <class R>
-std::unique_ptr<Probe<R>> make_one(const InflowProbe& spec, const std::string&, const ProbeStart&) {
-  return std::make_unique<Inflow<R>>(spec);
+std::unique_ptr<Probe<R>> make_one(const InflowProbe& spec, const std::string&, const ProbeStart& start) {
+  return std::make_unique<Inflow<R>>(spec, start);
 }
 template std::unique_ptr<Probe<float>> make_one(const InflowProbe&, const std::string&, const ProbeStart&);
 template std::unique_ptr<Probe<double>> make_one(const InflowProbe&, const std::string&, const ProbeStart&);

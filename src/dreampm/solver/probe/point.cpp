@@ -59,7 +59,7 @@ template <class R>
 class Point final : public Probe<R> {
  public:
   Point(const PointProbe& spec, const std::string& name, const ProbeStart& start) {
-    const ProbeStart::Body& body = start.bodies.at(static_cast<std::size_t>(spec.body));
+    const ProbeStart::Body& body = start.bodies.at(model::index_of(start.bodies, spec.body));
     set_ = body.set;
     weights_ = weights_at(spec.at, body, start, name);
     gradient_ = find_column(start.world.sets[set_].material, "f_00");

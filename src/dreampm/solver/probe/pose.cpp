@@ -9,7 +9,7 @@ namespace {
 template <class R>
 class PoseOf final : public Probe<R> {
  public:
-  explicit PoseOf(const PoseProbe& spec) : collider_(static_cast<std::size_t>(spec.collider)) {}
+  PoseOf(const PoseProbe& spec, const ProbeStart& start) : collider_(model::index_of(start.world.colliders, spec.on)) {}
 
   std::vector<std::string> columns() const override {
     return {"x", "y", "z", "qw", "qx", "qy", "qz", "vx", "vy", "vz", "wx", "wy", "wz"};
@@ -29,8 +29,8 @@ class PoseOf final : public Probe<R> {
 }  // namespace
 
 template <class R>
-std::unique_ptr<Probe<R>> make_one(const PoseProbe& spec, const std::string&, const ProbeStart&) {
-  return std::make_unique<PoseOf<R>>(spec);
+std::unique_ptr<Probe<R>> make_one(const PoseProbe& spec, const std::string&, const ProbeStart& start) {
+  return std::make_unique<PoseOf<R>>(spec, start);
 }
 template std::unique_ptr<Probe<float>> make_one(const PoseProbe&, const std::string&, const ProbeStart&);
 template std::unique_ptr<Probe<double>> make_one(const PoseProbe&, const std::string&, const ProbeStart&);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "dreampm/geometry/region.h"
-#include "dreampm/scene/probes.h"
+#include "dreampm/model/scene.h"
 #include "dreampm/solver/step.h"
 #include "dreampm/state/particle_view.h"
 #include "dreampm/state/regroup.h"
@@ -62,7 +62,7 @@ class Probe {
 /// Throws InputError, naming the probe, if it can measure nothing (a material point where the body
 /// has no matter).
 template <class R>
-std::unique_ptr<Probe<R>> make_probe(const scene::Probe& probe, const ProbeStart& start);
+std::unique_ptr<Probe<R>> make_probe(const model::Probe& probe, const ProbeStart& start);
 
 // One for each type, in the file of that name.
 template <class R>

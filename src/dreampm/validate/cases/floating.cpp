@@ -58,7 +58,7 @@ enum class Basin { filled, dry };
 Rest rest(Trial& t, double density, double time, Basin kind = Basin::filled, std::vector<std::string> overrides = {},
           double packed = 1) {
   overrides.push_back(fmt::format("materials.cork.density={}", density));
-  SceneDescription scene = built_in_scene("floating", overrides);
+  model::Scene scene = built_in_scene("floating", overrides);
   if (kind == Basin::dry) scene.bodies.erase(scene.bodies.begin());
   ValidationRun<float> run(t, scene);
   run.begin();

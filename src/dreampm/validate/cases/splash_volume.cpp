@@ -31,7 +31,7 @@ std::string box_of(const Fall& fall) {
 
 /// Drops of 2 cells in air, apart from each other and above the pool. Returns when the last one
 /// arrives [s].
-double add_drops(SceneDescription& scene, const Fall& fall) {
+double add_drops(model::Scene& scene, const Fall& fall) {
   constexpr double radius = 0.02;
   constexpr std::uint64_t seed = 1;
   std::uint64_t n = 0;
@@ -41,8 +41,8 @@ double add_drops(SceneDescription& scene, const Fall& fall) {
     return Vec3d{x, y, z};
   };
   const Vec3d margin{1.5 * radius, 1.5 * radius, 1.5 * radius};
-  const Vec3d low = scene.space.min + margin + Vec3d{0, fall.depth, 0}, high = scene.space.max - margin;
-  const scene::Body pool = scene.bodies.front();
+  const Vec3d low = scene.space.min + margin + Vec3d{0, fall.depth, 0}, high = scene.space.end() - margin;
+  const model::Body pool = scene.bodies.front();
   std::vector<Vec3d> centers;
   double last = 0;
   while (static_cast<int>(centers.size()) < fall.drops) {
@@ -50,7 +50,7 @@ double add_drops(SceneDescription& scene, const Fall& fall) {
     if (std::any_of(centers.begin(), centers.end(), [&](const Vec3d& c) { return length(c - at) < 2.2 * radius; }))
       continue;
     centers.push_back(at);
-    scene::Body drop = pool;
+    model::Body drop = pool;
     drop.name = fmt::format("drop_{}", centers.size());
     drop.shape = {};
     drop.shape.form = SphereShape{radius};
@@ -73,7 +73,7 @@ struct Course {
 Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, double watch = settled,
                 double size = 1) {
   overrides.push_back(box_of(fall));
-  SceneDescription scene = built_in_scene("splash-volume", overrides);
+  model::Scene scene = built_in_scene("splash-volume", overrides);
   const double impact = fall.drops ? add_drops(scene, fall) : fall.impact();
   ValidationRun<float> run(t, scene);
   run.begin();
@@ -87,7 +87,7 @@ Course let_fall(Trial& t, const Fall& fall, std::vector<std::string> overrides, 
       c.astray = std::abs(mean_position(run.world).y - start + 0.5 * g * now * now) / run.world.dx;
     c.time.push_back(now - impact);
     c.volume.push_back(
-        volume_by_columns(positions_by_id(run.world), scene.space.min, scene.space.max, 2 * run.world.dx) / rest);
+        volume_by_columns(positions_by_id(run.world), scene.space.min, scene.space.end(), 2 * run.world.dx) / rest);
   });
   return c;
 }

@@ -179,7 +179,7 @@ void run(Trial& t) {
   std::vector<Draw> thrown;
   for (int i = 0; i < 4; ++i) {
     thrown.push_back(draw_scene(1, i));
-    for (scene::Body& body : thrown.back().scene.bodies) body.velocity = body.velocity * 2;
+    for (model::Body& body : thrown.back().scene.bodies) body.velocity = body.velocity * 2;
   }
   double loudest = 0;
   for (const Outcome& r : run_draws(o, thrown)) loudest = std::max(loudest, r.energy);
@@ -226,7 +226,7 @@ void run_playground(Trial& t) {
   for (int i = 0; i < 4; ++i) {
     wrong.push_back(draw_report(1, i)), thrown.push_back(draw_report(1, i));
     wrong.back().scene.time.cfl = 3;
-    for (scene::Body& body : thrown.back().scene.bodies) body.velocity = {0, -1.5 * thrown.back().fall, 0};
+    for (model::Body& body : thrown.back().scene.bodies) body.velocity = {0, -1.5 * thrown.back().fall, 0};
   }
   const auto noticed = run_draws(o, wrong), loud = run_draws(o, thrown);
   t.control("steps of 3 cells", name,

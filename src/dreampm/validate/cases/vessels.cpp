@@ -139,7 +139,7 @@ struct Left {
 /// has gone into it by more than half a cell.
 Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), v.overrides.begin(), v.overrides.end());
-  SceneDescription scene = built_in_scene("vessels", overrides);
+  model::Scene scene = built_in_scene("vessels", overrides);
   if (v.mesh) scene.colliders.clear();
   ValidationRun<float> run(t, scene);
   if (v.mesh) {

@@ -1,0 +1,146 @@
+// What a run writes, and how its matter is shown: files, surfaces, looks, camera, light, video.
+#pragma once
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dreampm/vec.h"
+
+namespace dreampm {
+
+enum class SkyKind {
+  clear,    ///< blue, with soft clouds and a glow round the sun
+  studio,   ///< dark, with a soft light above
+  uniform,  ///< radiance 1 everywhere: for tests; no scene asks for it
+};
+
+namespace model {
+
+/// What `dreampm run` writes.
+struct Output {
+  std::string folder;                               ///< relative to the working folder; empty: out/NAME
+  std::vector<std::string> attributes{"velocity"};  ///< of particle_attributes
+  int checkpoint_every = 10;                        ///< frames; 0: never
+  bool operator==(const Output&) const = default;
+};
+inline constexpr std::array<const char*, 7> particle_attributes{"velocity", "f",        "j",    "jp",
+                                                                "density",  "pressure", "color"};
+
+enum class SurfaceFormat { ply, obj, vdb };
+
+/// How a surface is wrapped around particles.
+struct Surface {
+  double voxel = 0.5;  ///< in units of dx
+  int smooth = 2;      ///< rounds of smoothing, 0 to 10
+  SurfaceFormat format = SurfaceFormat::ply;
+  bool operator==(const Surface&) const = default;
+};
+
+enum class LookType { dielectric, opaque, spheres, wood, metal, plastic };
+
+/// How a material, collider or rigid body looks.
+struct Look {
+  LookType type = LookType::dielectric;
+  double ior = 1.333;               ///< dielectric, 1.01 to 3
+  Vec3d absorption{6.0, 1.7, 0.5};  ///< dielectric: 1/m, red green blue
+  Vec3d color{0.93, 0.33, 0.23};    ///< all but dielectric: sRGB 0..1
+  double roughness = 1;             ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
+  std::optional<double> ring{};     ///< wood: m from ring to ring; absent: by the size of the body
+  std::optional<Vec3d> grain{};     ///< wood: along its fibers, in the scene's axes at rest; absent: the longest way
+  double radius = 0.5;              ///< spheres: in units of the spacing
+  bool operator==(const Look&) const = default;
+
+  /// Clear matter, such as water or glass.
+  static Look dielectric(double ior = 1.333, const Vec3d& absorption = {6.0, 1.7, 0.5}) {
+    Look look;
+    look.ior = ior, look.absorption = absorption;
+    return look;
+  }
+  static Look opaque(const Vec3d& color, double roughness = 1) { return of(LookType::opaque, color, roughness); }
+  static Look wood(const Vec3d& color = {0.74, 0.54, 0.33}, double roughness = 0.45) {
+    return of(LookType::wood, color, roughness);
+  }
+  static Look metal(const Vec3d& color = {0.77, 0.78, 0.79}, double roughness = 0.3) {
+    return of(LookType::metal, color, roughness);
+  }
+  static Look plastic(const Vec3d& color = {0.62, 0.09, 0.07}, double roughness = 0.2) {
+    return of(LookType::plastic, color, roughness);
+  }
+
+ private:
+  static Look of(LookType type, const Vec3d& color, double roughness) {
+    Look look;
+    look.type = type, look.color = color, look.roughness = roughness;
+    return look;
+  }
+};
+
+struct Camera {
+  bool fit_basin = true;   ///< it stands so that the box of the scene fills the picture; else from, to
+  double azimuth = 60;     ///< degrees, with fit_basin
+  double elevation = 14;   ///< degrees, with fit_basin
+  double fill = 0.84;      ///< share of the frame that the box fills, with fit_basin
+  double fov = 34;         ///< degrees, vertical
+  Vec3d from{}, to{};      ///< m, without fit_basin
+  bool operator==(const Camera&) const = default;
+};
+
+struct Sun {
+  double elevation = 34, azimuth = 228;  ///< degrees
+  double angle = 2.5;                    ///< degrees, radius of the visible disc
+  double strength = 8;                   ///< irradiance on a plane that faces it; 0: no sun
+  bool operator==(const Sun&) const = default;
+};
+
+struct Light {
+  SkyKind sky = SkyKind::clear;
+  Sun sun;
+  bool operator==(const Light&) const = default;
+};
+
+enum class Floor { tiles, none };
+enum class Basin { glass, none };
+
+/// What stands around the matter.
+struct SceneProps {
+  Floor floor = Floor::tiles;
+  Basin basin = Basin::glass;
+  bool operator==(const SceneProps&) const = default;
+};
+
+/// What a picture leaves out, to look inside: the part of some things on that side of a plane to
+/// which its normal points.
+struct Cut {
+  Vec3d point{};                ///< m
+  Vec3d normal{};               ///< of any length above 0
+  std::vector<std::string> of;  ///< names of materials, colliders and rigid bodies
+  bool operator==(const Cut&) const = default;
+};
+
+/// How pictures are drawn.
+struct Render {
+  int width = 1920, height = 1080;  ///< pixels, both even
+  int samples = 40;                 ///< at most, a pixel
+  double noise = 0.009;             ///< tone-mapped error to stop at
+  bool caustics = true;
+  bool physical = false;  ///< leaves out what is only look
+  Camera camera;
+  Light light;
+  SceneProps stage;
+  std::optional<Cut> cut;
+  /// By name. A material or collider without one gets water's where it is a liquid, else a matte
+  /// color.
+  std::map<std::string, Look> looks;
+  bool operator==(const Render&) const = default;
+};
+
+struct Video {
+  int quality = 18;  ///< x264's crf: 0 best, 51 worst
+  bool operator==(const Video&) const = default;
+};
+
+}  // namespace model
+}  // namespace dreampm

@@ -1,0 +1,26 @@
+// A scene that a program built is checked as one of a file is.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "dreampm/scene/parse.h"
+
+namespace dreampm::scene {
+
+/// The scene, completed, and what is wrong with it; problems have their path in the message and no
+/// other place. It goes through the tables that files go through, so that every rule is there once.
+/// Reads no file.
+ParseResult check_scene(const model::Scene& given);
+
+/// The sentence of a key of the scene's tables: "space.spacing", "bodies.velocity". Empty for one
+/// that there is not.
+std::string meaning_of(std::string_view path);
+
+/// What stands behind `shape`, in `materials` and in `render.looks` of a scene file. `name` is the
+/// file's in messages, and models are looked for in its folder. Throw InputError.
+std::string shape_text(const Shape& shape);
+Shape parse_shape_text(std::string_view text, const std::string& name);
+model::Material parse_material_text(std::string_view text, const std::string& name);
+model::Look parse_look_text(std::string_view text, const std::string& name);
+
+}  // namespace dreampm::scene
