@@ -10,8 +10,12 @@
 
 namespace dreampm {
 
-/// All columns of the format. `backend`: the one that steps the world; `motion`: of the last pass;
-/// `sums`: of the steps since the row `before`, which is null for the first.
+/// The columns that the rows of a world have.
+template <class R>
+LedgerKind ledger_kind(const World<R>& world);
+
+/// A row with all that `ledger_kind` asks for. `backend`: the one that steps the world; `motion`:
+/// of the last pass; `sums`: of the steps since the row `before`, which is null for the first.
 template <class R>
 LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>& motion, const FrameSums& sums,
                      const LedgerRow* before);

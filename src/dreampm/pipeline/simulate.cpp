@@ -64,16 +64,6 @@ std::vector<fs::path> particle_files_in(const fs::path& folder) {
   return files;
 }
 
-std::vector<std::string> columns_of(const SceneDescription& scene) {
-  std::vector<std::string> columns = ledger_columns();
-  const auto append = [&](const std::vector<std::string>& more) {
-    columns.insert(columns.end(), more.begin(), more.end());
-  };
-  if (!scene.emitters.empty()) append(inflow_columns());
-  if (scene.time.solver == SolverKind::projection) append(projection_columns());
-  return columns;
-}
-
 /// One run of the simulate stage, from start or checkpoint to the last frame: watches an engine,
 /// and writes what it sees.
 template <class R>
@@ -161,7 +151,7 @@ class SimulationRun final : Observer<R> {
       warn("{}", w);
       record_.warnings.push_back(w);
     }
-    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", columns_of(scene_));
+    ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_kind(world()));
     last_row_.reset();
     probes_->begin();
     fill_->begin();
@@ -201,7 +191,7 @@ class SimulationRun final : Observer<R> {
       record_ = RunRecord::load(folder_ / "run.json");
       describe();
       std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > world().frame; });
-      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", columns_of(scene_), world().frame);
+      ledger_ = std::make_unique<LedgerWriter>(folder_ / "ledger.csv", ledger_kind(world()), world().frame);
       const std::vector<LedgerRow> rows = read_ledger(folder_ / "ledger.csv").rows;
       if (rows.empty())
         fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",

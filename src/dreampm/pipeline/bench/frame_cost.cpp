@@ -79,7 +79,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   const InitialState start = start_of(world);
   ProbeFiles<float> probes(scene, start, scene.name, folder.path / "probes");
   probes.begin();
-  LedgerWriter ledger(folder.path / "ledger.csv", ledger_columns());
+  LedgerWriter ledger(folder.path / "ledger.csv", ledger_kind(world));
   const std::vector<BodyRange> bodies{{"all", 0, static_cast<std::uint32_t>(world.particles()), std::nullopt}};
   Motion<float> motion;
   std::optional<LedgerRow> last;
