@@ -33,7 +33,8 @@ std::string meaning_of(const LedgerColumn& column) {
 }  // namespace
 
 std::string ledger_page() {
-  std::string page = "## Columns\n\nPrinted by `dreampm schema --ledger`. Columns of some runs alone stand at the end of a row.\n";
+  std::string page =
+      "## Columns\n\nPrinted by `dreampm schema --ledger`. Columns of some runs alone stand at the end of a row.\n";
   for (const auto& [group, head] : groups) {
     page += fmt::format("\n{}\n\n| column | unit | meaning |\n|---|---|---|\n", head);
     for (const LedgerColumn& c : ledger_columns)

@@ -6,6 +6,7 @@
 #include "dreampm/image.h"
 #include "dreampm/matter.h"
 #include "dreampm/mesh.h"
+#include "dreampm/observers.h"
 #include "dreampm/particles.h"
 #include "dreampm/pose.h"
 #include "dreampm/queries.h"

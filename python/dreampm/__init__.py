@@ -10,19 +10,19 @@ turns a scene file into a film. SI units, y up. Lines that the library reports g
 logging.getLogger("dreampm").
 """
 from ._dreampm import (
-    BodyState, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, Grip, InputError, Material,
-    Materials, MaterialState, Mesh, Motion, Names, NearCollider, NumericalFailure, ParticleCounts, Particles,
-    ParticleSets, Pose, RayHit, RunError, Scene, Shape, Simulation, Snapshot, Stepping, StepReport, Stroke, Totals,
-    Wall, Walls, box, cast_ray, colliders_near, contacts, cylinder, make, refused_parts, render, sphere, validate,
-    version as __version__, write_png)
+    BodyState, CheckpointFiles, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, Grip,
+    InputError, LedgerFile, Material, Materials, MaterialState, Mesh, Motion, Names, NearCollider, NumericalFailure,
+    ParticleCounts, ParticleFiles, Particles, ParticleSets, Pose, ProbeFiles, RayHit, RunError, Scene, Shape,
+    Simulation, Snapshot, Stepping, StepReport, Stroke, Totals, Wall, Walls, box, cast_ray, colliders_near,
+    contacts, cylinder, make, refused_parts, render, sphere, validate, version as __version__, write_png)
 
 __all__ = [
-    "BodyState", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent", "Frames", "Grip",
-    "InputError", "Material", "MaterialState", "Materials", "Mesh", "Motion", "Names", "NearCollider",
-    "NumericalFailure", "ParticleCounts", "ParticleSets", "Particles", "Pose", "RayHit", "RunError", "Scene", "Shape",
-    "Simulation", "Snapshot", "StepReport", "Stepping", "Stroke", "Totals", "Wall", "Walls", "__version__", "box",
-    "cast_ray", "colliders_near", "contacts", "cylinder", "make", "refused_parts", "render", "sphere", "validate",
-    "write_png"]
+    "BodyState", "CheckpointFiles", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent",
+    "Frames", "Grip", "InputError", "LedgerFile", "Material", "MaterialState", "Materials", "Mesh", "Motion",
+    "Names", "NearCollider", "NumericalFailure", "ParticleCounts", "ParticleFiles", "ParticleSets", "Particles",
+    "Pose", "ProbeFiles", "RayHit", "RunError", "Scene", "Shape", "Simulation", "Snapshot", "StepReport",
+    "Stepping", "Stroke", "Totals", "Wall", "Walls", "__version__", "box", "cast_ray", "colliders_near", "contacts",
+    "cylinder", "make", "refused_parts", "render", "sphere", "validate", "write_png"]
 
 # Names in messages and in help() are those that a program writes.
 for _name in __all__:

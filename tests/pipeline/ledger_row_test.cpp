@@ -1,5 +1,5 @@
 // The volume that liquids take: its column of the ledger, through checkpoints too, and the warning.
-#include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/run/ledger_row.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/setup/assemble.h"

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "dreampm/backend/cpu/cpu.h"
-#include "dreampm/pipeline/ledger_row.h"
 #include "dreampm/pipeline/strict.h"
 #include "dreampm/run/engine.h"
+#include "dreampm/run/ledger_row.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/setup/assemble.h"
 

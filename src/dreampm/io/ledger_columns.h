@@ -109,9 +109,9 @@ inline constexpr LedgerColumn ledger_columns[] = {
     {"energy_bound", "J", LedgerGroup::energy, &LedgerRow::energy_bound,
      "How much energy of this row may come from nowhere ([below](#bounds))."},
     {"volume", "m^3", LedgerGroup::volume, &LedgerRow::volume, "Sum of V0 J."},
-    {"j_min", "", LedgerGroup::volume, &LedgerRow::j_min,
-     "The least volume ratio J; `nan` in a frame without matter."},
-    {"j_max", "", LedgerGroup::volume, &LedgerRow::j_max, "The greatest volume ratio J; `nan` in a frame without matter."},
+    {"j_min", "", LedgerGroup::volume, &LedgerRow::j_min, "The least volume ratio J; `nan` in a frame without matter."},
+    {"j_max", "", LedgerGroup::volume, &LedgerRow::j_max,
+     "The greatest volume ratio J; `nan` in a frame without matter."},
     {"swollen", "", LedgerGroup::volume, &LedgerRow::swollen,
      "The share of their volume at rest that liquids take too much ([below](#swollen-liquid))."},
     {"entered", "", LedgerGroup::mass, &LedgerRow::entered, "Particles that emitters gave since the row before.",
@@ -130,7 +130,7 @@ inline constexpr LedgerColumn ledger_columns[] = {
 
 /// The column of a member. A call for a member without one does not compile.
 template <class Member>
-consteval const LedgerColumn& ledger_column(Member LedgerRow::*member) {
+consteval const LedgerColumn& ledger_column(Member LedgerRow::* member) {
   for (const LedgerColumn& column : ledger_columns)
     if (const auto* value = std::get_if<Member LedgerRow::*>(&column.value); value && *value == member) return column;
   throw "no column shows this member";

@@ -8,15 +8,10 @@
 #include <vector>
 
 #include "dreampm/pipeline/run_lock.h"
+#include "dreampm/pipeline/run_record_file.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm {
-
-/// Where a scene came from, for messages and run.json.
-struct SceneSource {
-  std::string path;
-  std::optional<std::string> variant;
-};
 
 struct SimulateOptions {
   std::filesystem::path folder;  ///< of the run

@@ -9,8 +9,7 @@
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/base/interrupt.h"
-#include "dreampm/run/engine.h"
-#include "dreampm/setup/assemble.h"
+#include "dreampm/run/scene_engine.h"
 #include "dreampm/validate/case.h"
 #include "dreampm/validate/measure/table.h"
 #include "dreampm/validate/set_up.h"
@@ -35,8 +34,7 @@ template <class R>
 class ValidationRun {
  private:
   Trial& trial_;
-  InitialState start_;
-  std::unique_ptr<Engine<R>> engine_;
+  SceneEngine<R> scene_;
   static std::unique_ptr<Backend<R>> make_backend() {
     if constexpr (sizeof(R) == sizeof(float))
       return make_cpu_backend();
@@ -49,19 +47,19 @@ class ValidationRun {
       : ValidationRun(trial, built_in_scene(scene, overrides)) {}
   ValidationRun(Trial& trial, const SceneDescription& scene)
       : trial_(trial),
-        start_(assemble(scene, scene.name)),
-        engine_(std::make_unique<Engine<R>>(as_world<R>(start_.world), make_backend())),
-        world(engine_->world()) {
-    trial.set_up(scene.name, set_up_of(scene, start_.world));
-    seeds = std::move(start_.seeds);
+        scene_(scene, scene.name, make_backend()),
+        world(scene_.engine().world()),
+        seeds(scene_.start().seeds) {
+    trial.set_up(scene.name, set_up_of(scene, scene_.start().world));
   }
 
   World<R>& world;
-  std::vector<std::vector<ParticleSeed>> seeds;  ///< by set; what a case may still move before `begin`
+  std::vector<std::vector<ParticleSeed>>& seeds;  ///< by set; what a case may still move before `begin`
 
   /// Whether liquids are pressed by their own weight, and not by a projection.
   bool compresses() const { return world.settings.solver == SolverKind::explicit_steps; }
-  Backend<R>& backend() { return engine_->backend(); }
+  Engine<R>& engine() { return scene_.engine(); }
+  Backend<R>& backend() { return engine().backend(); }
   /// Every seed, ids ascending from 0.
   std::vector<ParticleSeed> all_seeds() const {
     std::vector<ParticleSeed> all;
@@ -70,18 +68,18 @@ class ValidationRun {
     return all;
   }
   void begin() {
-    engine_->begin(seeds);
-    engine_->download(MatterFields::all);
+    scene_.begin();
+    engine().download(MatterFields::all);
   }
   /// Between steps a case may look at and change whatever it likes. `motion` is filled at the end
   /// of a frame, and from `next_sample_time` [s] on.
   StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");
     trial_.cost(world.particles());
-    engine_->upload(MatterFields::all);
-    const StepSums sums = engine_->step(motion ? next_sample_time : never);
-    engine_->download(MatterFields::all);
-    if (motion && engine_->motion_is_current()) *motion = engine_->motion();
+    engine().upload(MatterFields::all);
+    const StepSums sums = engine().step(motion ? next_sample_time : never);
+    engine().download(MatterFields::all);
+    if (motion && engine().motion_is_current()) *motion = engine().motion();
     return sums;
   }
   /// Steps until world.time reaches `time` [s], calling each(report) after every step.

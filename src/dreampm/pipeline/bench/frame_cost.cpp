@@ -8,8 +8,9 @@
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/file.h"
 #include "dreampm/pictures/frames.h"
-#include "dreampm/pipeline/ledger_row.h"
-#include "dreampm/pipeline/probes.h"
+#include "dreampm/run/ledger_row.h"
+#include "dreampm/run/probe_set.h"
+#include "dreampm/run/probe_writer.h"
 
 namespace dreampm {
 namespace {
@@ -77,8 +78,11 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
   const TemporaryFolder folder;
   const SceneDescription scene = probed(world);
   const InitialState start = start_of(world);
-  ProbeFiles<float> probes(scene, start, scene.name, folder.path / "probes");
-  probes.begin();
+  ProbeSet<float> probes(scene, start, scene.name);
+  std::vector<ProbeColumns> columns;
+  for (std::size_t p = 0; p < probes.size(); ++p) columns.push_back({probes.name(p), probes.columns(p)});
+  ProbeWriter probe_files(columns, folder.path / "probes");
+  probe_files.begin();
   LedgerWriter ledger(folder.path / "ledger.csv", ledger_kind(world));
   const std::vector<BodyRange> bodies{{"all", 0, static_cast<std::uint32_t>(world.particles()), std::nullopt}};
   Motion<float> motion;
@@ -92,7 +96,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     const double with = seconds_of([&] {
       const StepSums report = step<float>(world, *backend, &motion, 0);
       sums.add(report, heaviest);
-      probes.set().accumulate(report);
+      probes.accumulate(report);
     });
     const double writing = seconds_of([&] {
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
@@ -100,7 +104,9 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
       row.frame = frame + 1;
       ledger.append(row);
       last = std::move(row);
-      probes.write(world, motion, true);
+      probes.sample(world, motion, true, [&](std::size_t p, const std::vector<double>& numbers) {
+        probe_files.append(p, world.time, numbers);
+      });
       state_hash(world);
     });
     if (frame == 0) continue;  // warms the arrays of motions

@@ -6,9 +6,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/bench/moment.h"
-#include "dreampm/run/engine.h"
-#include "dreampm/setup/assemble.h"
-#include "dreampm/setup/start.h"
+#include "dreampm/run/scene_engine.h"
 
 namespace dreampm {
 namespace {
@@ -24,22 +22,23 @@ class Turn {
     } else if (scene.time.cfl > largest_cfl) {
       scene.time.cfl = scene::Time{}.cfl;
     }
-    const InitialState start = assemble(scene, scene.name);
-    engine_ = std::make_unique<Engine<float>>(as_world<float>(start.world), make_cpu_backend());
-    begin(*engine_, start, scene);
+    scene_ = std::make_unique<SceneEngine<float>>(scene, scene.name, make_cpu_backend());
+    scene_->begin();
+    scene_->start() = {};
   }
   void to_frame(int frame, SolverCost& cost) {
     const Moment begun;
-    while (engine_->world().frame < frame) {
-      cost.particle_steps += engine_->world().particles(), ++cost.steps;
-      engine_->step();
+    Engine<float>& engine = scene_->engine();
+    while (engine.world().frame < frame) {
+      cost.particle_steps += engine.world().particles(), ++cost.steps;
+      engine.step();
     }
     cost.cpu_seconds += Moment().cpu - begun.cpu;
   }
-  std::uint64_t particles() const { return engine_->world().particles(); }
+  std::uint64_t particles() const { return scene_->engine().world().particles(); }
 
  private:
-  std::unique_ptr<Engine<float>> engine_;
+  std::unique_ptr<SceneEngine<float>> scene_;
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 
 #include "dreampm/backend/backend.h"
 #include "dreampm/io/ledger.h"
-#include "dreampm/pipeline/checkpoint.h"
+#include "dreampm/run/frame_sums.h"
 
 namespace dreampm {
 

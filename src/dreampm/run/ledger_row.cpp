@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/run/ledger_row.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,8 @@
+#include "dreampm/run/frame_sums.h"
+
 #include <algorithm>
 #include <limits>
-
-#include "dreampm/pipeline/checkpoint.h"
+#include <utility>
 
 namespace dreampm {
 
@@ -29,5 +30,17 @@ void FrameSums::add(const StepSums& step, double heaviest) {
   if (step.swollen) swollen = step.swollen;
   if (step.projected) projected = projected.value_or(0) + *step.projected;
 }
+
+template <class R>
+void FrameTotals<R>::on_step(const StepSums& step) {
+  if (std::exchange(ended_, step.frame_done)) sums_ = {};
+  double heaviest = 0;
+  for (const auto& set : engine_.world().sets) heaviest = std::max(heaviest, set.mass);
+  sums_.add(step, heaviest);
+  particle_steps_ += engine_.world().particles();
+}
+
+template class FrameTotals<float>;
+template class FrameTotals<double>;
 
 }  // namespace dreampm

@@ -1,4 +1,4 @@
-#include "dreampm/simulation/probe_set.h"
+#include "dreampm/run/probe_set.h"
 
 #include <fmt/ranges.h>
 
