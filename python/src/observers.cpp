@@ -12,8 +12,9 @@ namespace {
 
 template <class Files>
 void bind_attach(nb::handle simulation, const char* about) {
-  nb::cpp_function_def([](HeldSimulation& held, const Files& files) { held.call([&](Simulation& s) { attach(s, files); }); },
-                       nb::scope(simulation), nb::name("attach"), nb::is_method(), nb::arg("files"), about);
+  nb::cpp_function_def(
+      [](HeldSimulation& held, const Files& files) { held.call([&](Simulation& s) { attach(s, files); }); },
+      nb::scope(simulation), nb::name("attach"), nb::is_method(), nb::arg("files"), about);
 }
 
 }  // namespace
@@ -31,8 +32,9 @@ void bind_observers(nb::module_& m) {
           nb::arg("folder"), nb::arg("attributes") = std::vector<std::string>{"velocity"},
           "Attributes: velocity, f, j, jp, density, pressure, color.");
   nb::class_<ProbeFiles>(m, "ProbeFiles", "The rows of the scene's probes, a CSV file each: for Simulation.attach.")
-      .def("__init__", [](ProbeFiles* self, Path folder) { new (self) ProbeFiles{std::move(folder)}; },
-           nb::arg("folder"));
+      .def(
+          "__init__", [](ProbeFiles* self, Path folder) { new (self) ProbeFiles{std::move(folder)}; },
+          nb::arg("folder"));
   nb::class_<CheckpointFiles>(m, "CheckpointFiles", "Moments that Scene.load goes on from: for Simulation.attach.")
       .def(
           "__init__",

@@ -57,8 +57,10 @@ TEST_F(Places, AVerbIsAFileAndARow) {
   const std::vector<std::string> verbs = rows("cli/verbs.h", "VERB");
   EXPECT_GE(verbs.size(), 17u);
   for (const std::string& verb : verbs)
-    EXPECT_THAT(of({"add_" + verb + "(CLI", "VERB(" + verb + ")"}), UnorderedElementsAre("cli/" + verb + ".cpp", "cli/verbs.h"));
-  EXPECT_THAT(of({"schema.cpp"}), testing::Not(testing::Contains("cli/CMakeLists.txt"))) << "the build finds them itself";
+    EXPECT_THAT(of({"add_" + verb + "(CLI", "VERB(" + verb + ")"}),
+                UnorderedElementsAre("cli/" + verb + ".cpp", "cli/verbs.h"));
+  EXPECT_THAT(of({"schema.cpp"}), testing::Not(testing::Contains("cli/CMakeLists.txt")))
+      << "the build finds them itself";
 }
 
 TEST_F(Places, AnExportFormatIsAFileAndARow) {
@@ -75,7 +77,8 @@ TEST_F(Places, AnExportFormatIsAFileAndARow) {
 
 TEST_F(Places, AColumnOfTheLedgerIsItsMemberWithARowAndItsValue) {
   for (const char* column : {"dissipated_damping", "dissipated_relaxation", "dissipated_friction"})
-    EXPECT_THAT(of({column}), UnorderedElementsAre("src/dreampm/io/ledger_columns.h", "src/dreampm/run/ledger_row.cpp"));
+    EXPECT_THAT(of({column}),
+                UnorderedElementsAre("src/dreampm/io/ledger_columns.h", "src/dreampm/run/ledger_row.cpp"));
 }
 
 }  // namespace

@@ -75,9 +75,11 @@ TEST(Attached, FilesGoOnFromWhereTheSimulationWasTakenBackTo) {
   EXPECT_EQ(read_ledger(back / "ledger.csv").rows.size(), 7u);
   two.restore(then);
   EXPECT_EQ(read_ledger(back / "ledger.csv").rows.size(), 5u);
-  EXPECT_EQ(read_series(back / "probes/floor.csv").rows.back().at(0), read_series(back / "probes/level.csv").rows.back().at(0));
+  EXPECT_EQ(read_series(back / "probes/floor.csv").rows.back().at(0),
+            read_series(back / "probes/level.csv").rows.back().at(0));
   two.advance_frames(4);
-  for (const std::string& file : files_of_frames(9)) EXPECT_EQ(read_file(back / file), read_file(straight / file)) << file;
+  for (const std::string& file : files_of_frames(9))
+    EXPECT_EQ(read_file(back / file), read_file(straight / file)) << file;
 }
 
 TEST(Attached, CheckpointsAreGoneOnFrom) {
@@ -120,7 +122,8 @@ TEST(Attached, AnyMomentIsABeginning) {
 TEST(Attached, WhatCannotBeWrittenIsSaid) {
   Simulation s(tap(), quiet());
   const fs::path folder = fresh_folder("wrong");
-  EXPECT_THAT(message_of<InputError>([&] { attach(s, ParticleFiles{folder, {"velocity", "mood"}}); }), HasSubstr("mood"));
+  EXPECT_THAT(message_of<InputError>([&] { attach(s, ParticleFiles{folder, {"velocity", "mood"}}); }),
+              HasSubstr("mood"));
   EXPECT_THAT(message_of<InputError>([&] { attach(s, CheckpointFiles{folder, 0}); }), HasSubstr("must be 1 or more"));
   replace_file_text(folder / "file", "");
   EXPECT_THROW(attach(s, LedgerFile{folder / "file/ledger.csv"}), Error);

@@ -103,8 +103,8 @@ void RunRecordFile<R>::on_frame() {
   if (const auto w = swollen_.look(world, ledger_.row())) warn_of_volume(*w);
   Hash64 hash;
   hash.add(state_hash(world));
-  record_.frames.push_back({world.frame, world.time, totals_.sums().substeps, hash.hex(), world.particles(), world.left,
-                            poses_of(world)});
+  record_.frames.push_back(
+      {world.frame, world.time, totals_.sums().substeps, hash.hex(), world.particles(), world.left, poses_of(world)});
   save();
 }
 
