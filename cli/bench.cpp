@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "dreampm/pipeline/bench.h"
-#include "dreampm/pipeline/bench/solvers.h"
+#include "bench/bench.h"
+#include "bench/solvers.h"
 #include "verbs.h"
 
 namespace dreampm::cli {

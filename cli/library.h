@@ -1,5 +1,6 @@
 // What the command uses of the library.
 #pragma once
+#include "bench/bench.h"
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -11,7 +12,6 @@
 #include "dreampm/import/import.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/physics/param.h"
-#include "dreampm/pipeline/bench.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/export_stage.h"
 #include "dreampm/pipeline/inspect.h"

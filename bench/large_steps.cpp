@@ -1,10 +1,10 @@
-#include "dreampm/pipeline/bench/large_steps.h"
+#include "bench/large_steps.h"
 
 #include <cmath>
 
+#include "bench/moment.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/projection/time_step.h"
-#include "dreampm/pipeline/bench/moment.h"
 #include "dreampm/solver/projection/projection.h"
 
 namespace dreampm {

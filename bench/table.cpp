@@ -3,14 +3,14 @@
 #include <cmath>
 #include <optional>
 
+#include "bench/bench.h"
+#include "bench/course.h"
+#include "bench/frame_cost.h"
+#include "bench/operations.h"
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/pipeline/bench.h"
-#include "dreampm/pipeline/bench/course.h"
-#include "dreampm/pipeline/bench/frame_cost.h"
-#include "dreampm/pipeline/bench/operations.h"
 
 namespace dreampm {
 namespace {

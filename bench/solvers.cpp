@@ -1,11 +1,11 @@
-#include "dreampm/pipeline/bench/solvers.h"
+#include "bench/solvers.h"
 
 #include <algorithm>
 
+#include "bench/moment.h"
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/physics/projection/time_step.h"
-#include "dreampm/pipeline/bench/moment.h"
 #include "dreampm/run/scene_engine.h"
 
 namespace dreampm {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/scenes.h"
 #include "dreampm/backend/backend.h"
-#include "dreampm/pipeline/bench/scenes.h"
 
 namespace dreampm {
 

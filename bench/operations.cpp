@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/bench/operations.h"
+#include "bench/operations.h"
 
 #include "dreampm/backend/common.h"
 #include "dreampm/math/rng.h"

@@ -1,10 +1,10 @@
-#include "dreampm/pipeline/bench/course.h"
+#include "bench/course.h"
 
 #include <algorithm>
 
+#include "bench/moment.h"
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/pipeline/bench/moment.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {

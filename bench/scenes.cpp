@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/bench/scenes.h"
+#include "bench/scenes.h"
 
 #include <algorithm>
 #include <cmath>

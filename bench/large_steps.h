@@ -3,8 +3,8 @@
 #include <memory>
 #include <string_view>
 
+#include "bench/course.h"
 #include "dreampm/backend/cpu/cpu.h"
-#include "dreampm/pipeline/bench/course.h"
 
 namespace dreampm {
 

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/bench/frame_cost.h"
+#include "bench/frame_cost.h"
 
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-#include "dreampm/pipeline/bench/taps.h"
+#include "bench/taps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/moment.h"
+#include "bench/scenes.h"
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -13,8 +15,6 @@
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/projection/time_step.h"
-#include "dreampm/pipeline/bench/moment.h"
-#include "dreampm/pipeline/bench/scenes.h"
 
 namespace dreampm {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-#include "dreampm/pipeline/bench/course.h"
+#include "bench/course.h"
 
 namespace dreampm {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <string_view>
 
-#include "dreampm/pipeline/bench/counted.h"
+#include "bench/counted.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {

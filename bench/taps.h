@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "dreampm/pipeline/bench.h"
-#include "dreampm/pipeline/bench/course.h"
+#include "bench/bench.h"
+#include "bench/course.h"
 #include "dreampm/run/engine.h"
 
 namespace dreampm {

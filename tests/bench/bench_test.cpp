@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
+#include "bench/bench.h"
+#include "bench/course.h"
+#include "bench/operations.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/pipeline/bench.h"
-#include "dreampm/pipeline/bench/course.h"
-#include "dreampm/pipeline/bench/operations.h"
 
 namespace dreampm {
 namespace {

@@ -1,18 +1,18 @@
-#include "dreampm/pipeline/bench.h"
+#include "bench/bench.h"
 
 #include <algorithm>
 #include <chrono>
 #include <numeric>
 
+#include "bench/course.h"
+#include "bench/large_steps.h"
+#include "bench/operations.h"
+#include "bench/scenes.h"
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/physics/materials.h"
-#include "dreampm/pipeline/bench/course.h"
-#include "dreampm/pipeline/bench/large_steps.h"
-#include "dreampm/pipeline/bench/operations.h"
-#include "dreampm/pipeline/bench/scenes.h"
 
 namespace dreampm {
 namespace {
