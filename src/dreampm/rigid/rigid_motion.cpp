@@ -1,4 +1,4 @@
-#include "dreampm/solver/rigid_motion.h"
+#include "dreampm/rigid/rigid_motion.h"
 
 #include <cmath>
 
