@@ -17,7 +17,7 @@ struct LedgerFile {
 
 /// A PLY file of all particles a frame, particles_NNNNNN.ply, the first at once.
 struct ParticleFiles {
-  std::filesystem::path folder;
+  std::filesystem::path folder;  ///< is made if it is not there
   /// What it holds beside positions, identities and materials: velocity, f, j, jp, density,
   /// pressure, color.
   std::vector<std::string> attributes{"velocity"};
@@ -25,15 +25,15 @@ struct ParticleFiles {
 
 /// The rows of the scene's probes, those measured so far too: NAME.csv for each.
 struct ProbeFiles {
-  std::filesystem::path folder;
+  std::filesystem::path folder;  ///< is made where the scene has probes
 };
 
 /// Saved moments, as Simulation::save writes them: checkpoint_NNNNNN.yaml and what it starts from.
 /// Simulation::load goes on from one.
 struct CheckpointFiles {
-  std::filesystem::path folder;
-  int every = 10;  ///< frames
-  int keep = 2;    ///< of them, the newest; 0: all
+  std::filesystem::path folder;  ///< is made if it is not there
+  int every = 10;                ///< frames
+  int keep = 2;                  ///< of them, the newest; 0: all
 };
 
 /// Writes from now on, for as long as the simulation lives. Files are written at the end of a

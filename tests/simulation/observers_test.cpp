@@ -119,6 +119,20 @@ TEST(Attached, AnyMomentIsABeginning) {
   EXPECT_TRUE(fs::exists(folder / "particles/particles_000004.ply"));
 }
 
+TEST(Attached, FilesOfOthersInTheFolderStay) {
+  const fs::path folder = fresh_folder("together");
+  replace_file_text(folder / "mine.csv", "1\n");
+  Simulation s(tap(), quiet());
+  attach(s, LedgerFile{folder / "ledger.csv"});
+  attach(s, ProbeFiles{folder});
+  attach(s, ParticleFiles{folder});
+  attach(s, CheckpointFiles{folder, 1, 1});
+  s.advance_frames(2);
+  for (const char* file : {"mine.csv", "ledger.csv", "level.csv", "particles_000001.ply", "checkpoint_000003.yaml"})
+    EXPECT_TRUE(fs::exists(folder / file)) << file;
+  EXPECT_FALSE(fs::exists(folder / "checkpoint_000002.yaml"));
+}
+
 TEST(Attached, WhatCannotBeWrittenIsSaid) {
   Simulation s(tap(), quiet());
   const fs::path folder = fresh_folder("wrong");

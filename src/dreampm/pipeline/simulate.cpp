@@ -160,21 +160,21 @@ class SimulationRun {
         advance();
       }
     } catch (const NumericalFailure& e) {
-      if (all_) all_->record.end("failed", e.what());
+      if (watched_) watched_->record.end("failed", e.what());
       throw RunError(std::string(e.what()) + "; the frames and checkpoints before it are whole");
     } catch (const RunError& e) {
-      if (all_) all_->record.end_failed(e.what());
+      if (watched_) watched_->record.end_failed(e.what());
       throw;
     }
-    all_->record.end("complete");
+    watched_->record.end("complete");
     result.frames_done = world().frame;
     return result;
   }
 
  private:
-  const World<R>& world() const { return all_->world(); }
+  const World<R>& world() const { return watched_->world(); }
   void assemble_scene() { assembled_ = assemble(task_.scene, task_.source.path); }
-  void describe() { all_->record.describe(task_.scene, task_.source, task_.hash, all_->scene.start()); }
+  void describe() { watched_->record.describe(task_.scene, task_.source, task_.hash, watched_->scene.start()); }
 
   /// A new start says what it does to a folder that is in use.
   void say_start() const {
@@ -188,28 +188,29 @@ class SimulationRun {
   /// `particle_steps`: taken before, in vain.
   void start(std::uint64_t particle_steps = 0) {
     // What it refuses must leave an earlier run as it is.
-    all_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), task_.options.isa);
-    all_->totals.go_on({}, particle_steps);
-    all_->record.begin(all_->particles.content().shift);
+    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), task_.options.isa);
+    watched_->totals.go_on({}, particle_steps);
+    watched_->record.begin(watched_->particles.content().shift);
     describe();
-    all_->scene.begin();
+    watched_->scene.begin();
     with_kept_models(task_.scene);  // reads every file that a model names
     task_.lock->keep();
     for (const fs::path& old : checkpoints_in(task_.checkpoints())) fs::remove(old);
     for (const fs::path& old : particle_files_in(task_.particles())) fs::remove(old);
     if (const std::string w = too_many_stages(world()); !w.empty()) {
       warn("{}", w);
-      all_->record.add_warning(w);
+      watched_->record.add_warning(w);
     }
-    all_->probes.begin();
-    all_->fill.begin();
-    all_->scene.start().seeds = {};
+    watched_->probes.remove_earlier();
+    watched_->probes.begin();
+    watched_->fill.begin();
+    watched_->scene.start().seeds = {};
     fresh_ = true;
     write_run_scene(task_.scene, task_.options.folder);
-    all_->scene.probes().sample(true);
-    all_->particles.on_frame();
-    all_->ledger.begin();
-    all_->record.on_frame();
+    watched_->scene.probes().sample(true);
+    watched_->particles.on_frame();
+    watched_->ledger.begin();
+    watched_->record.on_frame();
   }
 
   /// Goes on from the newest checkpoint that can be read; false if there is none.
@@ -218,17 +219,17 @@ class SimulationRun {
     std::optional<SavedRun<R>> saved =
         newest_checkpoint<R>(task_.checkpoints(), assembled_.world, {task_.hash, options.backend, options.isa});
     if (!saved) return false;
-    all_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), saved->info.isa);
-    all_->scene.go_on(std::move(saved->world), saved->info.probes);
-    all_->totals.go_on(saved->info.sums, saved->info.particle_steps);
-    all_->record.go_on();
+    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), saved->info.isa);
+    watched_->scene.go_on(std::move(saved->world), saved->info.probes);
+    watched_->totals.go_on(saved->info.sums, saved->info.particle_steps);
+    watched_->record.go_on();
     describe();
-    if (!all_->ledger.go_on())
+    if (!watched_->ledger.go_on())
       fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
                  (options.folder / "ledger.csv").string(), world().frame, saved->file.filename().string());
-    all_->probes.go_on(world().time);
-    all_->fill.resume(world().time);
-    all_->scene.start().seeds = {};
+    watched_->probes.go_on(world().time);
+    watched_->fill.resume(world().time);
+    watched_->scene.start().seeds = {};
     write_run_scene(task_.scene, options.folder);
     info("going on from {} at frame {}", saved->file.filename().string(), world().frame);
     return true;
@@ -238,25 +239,26 @@ class SimulationRun {
   /// long.
   void again_at_half_cfl(const std::string& cause) {
     const double cfl = world().settings.cfl / 2;
-    const std::uint64_t in_vain = all_->totals.particle_steps();
+    const std::uint64_t in_vain = watched_->totals.particle_steps();
     assemble_scene();
     assembled_.world.settings.cfl = cfl;
     if (!restore()) start(in_vain);
-    all_->scene.engine().world().settings.cfl = cfl;
+    watched_->scene.engine().world().settings.cfl = cfl;
     const std::string warning =
         fmt::format("{}; went on from frame {} with time.cfl {:.4g}", cause, world().frame, cfl);
-    all_->record.add_warning(warning);
+    watched_->record.add_warning(warning);
     warn("{}", warning);
-    all_->record.save();
+    watched_->record.save();
   }
 
   void advance() {
-    const std::shared_ptr<Progress> progress = all_->progress.show(task_.last);
+    const std::shared_ptr<Progress> progress = watched_->progress.show(task_.last);
     try {
-      all_->scene.engine().advance([&] { return world().frame >= task_.last; }, [](const World<R>&) { return false; });
+      watched_->scene.engine().advance([&] { return world().frame >= task_.last; },
+                                       [](const World<R>&) { return false; });
     } catch (const Interrupted&) {
-      all_->checkpoints.write();
-      all_->record.end("interrupted");
+      watched_->checkpoints.write();
+      watched_->record.end("interrupted");
       throw Interrupted(fmt::format(
           "interrupted at frame {}; the state is saved: the same command with --resume goes on", world().frame));
     }
@@ -265,7 +267,7 @@ class SimulationRun {
   RunTask task_;
   ThreadLimit threads_;
   InitialState assembled_;  ///< until it is in an engine
-  std::unique_ptr<WatchedScene<R>> all_;
+  std::unique_ptr<WatchedScene<R>> watched_;
   bool fresh_ = false;
 };
 

@@ -5,10 +5,13 @@
 namespace dreampm {
 namespace fs = std::filesystem;
 
+void ProbeWriter::remove_earlier() const {
+  if (!fs::is_directory(folder_)) return;
+  for (const auto& old : fs::directory_iterator(folder_))
+    if (old.path().extension() == ".csv") fs::remove(old);
+}
+
 void ProbeWriter::begin() {
-  if (fs::is_directory(folder_))
-    for (const auto& old : fs::directory_iterator(folder_))
-      if (old.path().extension() == ".csv") fs::remove(old);
   files_.clear();
   if (!probes_.empty()) make_folder(folder_);
   for (const ProbeColumns& probe : probes_)

@@ -20,8 +20,10 @@ class ProbeWriter {
  public:
   ProbeWriter(std::vector<ProbeColumns> probes, std::filesystem::path folder)
       : probes_(std::move(probes)), folder_(std::move(folder)) {}
-  /// Begins new files; those of earlier runs are removed.
+  /// Begins new files.
   void begin();
+  /// Removes all CSV files of the folder, which is that of a run: those of probes that it had.
+  void remove_earlier() const;
   /// Goes on at `time` [s]: rows after it are cut. Throws InputError where a file is gone.
   void go_on(double time);
   /// A row of a probe, by its number.
