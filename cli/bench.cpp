@@ -2,9 +2,9 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "dreampm/pipeline/bench.h"
-#include "dreampm/pipeline/bench/edits.h"
-#include "dreampm/pipeline/bench/solvers.h"
+#include "bench/bench.h"
+#include "bench/edits.h"
+#include "bench/solvers.h"
 #include "verbs.h"
 
 namespace dreampm::cli {

@@ -1,5 +1,6 @@
 // What the command uses of the library.
 #pragma once
+#include "bench/bench.h"
 #include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -12,7 +13,6 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/model/scene.h"
 #include "dreampm/physics/param.h"
-#include "dreampm/pipeline/bench.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/export_stage.h"
 #include "dreampm/pipeline/inspect.h"
@@ -27,7 +27,7 @@
 #include "dreampm/pipeline/video_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/validate/page.h"
-#include "dreampm/validate/report.h"
-#include "dreampm/validate/suite.h"
 #include "dreampm/version.h"
+#include "validate/page.h"
+#include "validate/report.h"
+#include "validate/suite.h"

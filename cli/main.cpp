@@ -61,25 +61,9 @@ int run(int argc, char** argv) {
   app.footer("\nExample:\n  dreampm make scenes/dam-break.yaml\n\n'dreampm VERB --help' says more about a verb.");
   app.require_subcommand(1);
   Action action;
-  add_make(app, action);
-#ifdef DM_APP
-  add_play(app, action);
-#endif
-  add_run(app, action);
-  add_points(app, action);
-  add_surface(app, action);
-  add_render(app, action);
-  add_video(app, action);
-  add_export(app, action);
-  add_check(app, action);
-  add_info(app, action);
-  add_materials(app, action);
-  add_schema(app, action);
-  add_validate(app, action);
-  add_bench(app, action);
-  add_help(app, action);
-  add_completion(app, action);
-  add_manual(app, action);
+#define DM_ADD(name) add_##name(app, action);
+  DM_VERBS(DM_ADD)
+#undef DM_ADD
 
   if (const std::string wrong = without_verb(app, argc, argv); !wrong.empty()) return complain(wrong, 2);
   const std::vector<std::string> words = leading_words(argc, argv);

@@ -1,4 +1,4 @@
-// `dreampm schema`: what a scene may hold, from the tables that read it.
+// `dreampm schema`: what a scene may hold, and what a ledger has, from the tables that read them.
 #pragma once
 #include <string>
 
@@ -8,6 +8,9 @@ namespace dreampm::cli {
 
 /// The page docs/reference/scene.md.
 std::string scene_page();
+
+/// The part "Columns" of docs/reference/ledger.md.
+std::string ledger_page();
 
 /// A JSON Schema (draft 2020-12) for scenes.
 std::string scene_json_schema();

@@ -18,25 +18,35 @@ namespace dreampm::cli {
 /// What the chosen verb does; its result is the exit code.
 using Action = std::function<int()>;
 
-void add_make(CLI::App& app, Action& action);
-void add_run(CLI::App& app, Action& action);
-void add_points(CLI::App& app, Action& action);
-void add_export(CLI::App& app, Action& action);
-void add_surface(CLI::App& app, Action& action);
-void add_render(CLI::App& app, Action& action);
-void add_video(CLI::App& app, Action& action);
-void add_check(CLI::App& app, Action& action);
-void add_info(CLI::App& app, Action& action);
-void add_materials(CLI::App& app, Action& action);
-void add_schema(CLI::App& app, Action& action);
-void add_validate(CLI::App& app, Action& action);
-/// Only where the app is built.
-void add_play(CLI::App& app, Action& action);
+#ifdef DM_APP
+#define DM_APP_VERBS(VERB) VERB(play)
 void add_bench_play(CLI::App& bench, Action& action);
-void add_help(CLI::App& app, Action& action);
-void add_bench(CLI::App& app, Action& action);
-void add_completion(CLI::App& app, Action& action);
-void add_manual(CLI::App& app, Action& action);
+#else
+#define DM_APP_VERBS(VERB)
+#endif
+/// In the order of --help. A verb NAME is a row here, and a file of this folder that defines
+/// add_NAME.
+#define DM_VERBS(VERB) \
+  VERB(make)           \
+  DM_APP_VERBS(VERB)   \
+  VERB(run)            \
+  VERB(points)         \
+  VERB(surface)        \
+  VERB(render)         \
+  VERB(video)          \
+  VERB(export)         \
+  VERB(check)          \
+  VERB(info)           \
+  VERB(materials)      \
+  VERB(schema)         \
+  VERB(validate)       \
+  VERB(bench)          \
+  VERB(help)           \
+  VERB(completion)     \
+  VERB(manual)
+#define DM_DECLARE(name) void add_##name(CLI::App& app, Action& action);
+DM_VERBS(DM_DECLARE)
+#undef DM_DECLARE
 
 /// A verb with its example, shown by --help; an example may have several lines.
 CLI::App* add_verb(CLI::App& app, const std::string& name, const std::string& about, const std::string& example);

@@ -7,6 +7,7 @@
 #include "dreampm/matter.h"
 #include "dreampm/mesh.h"
 #include "dreampm/model/scene.h"
+#include "dreampm/observers.h"
 #include "dreampm/particles.h"
 #include "dreampm/pose.h"
 #include "dreampm/queries.h"

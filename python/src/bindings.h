@@ -11,6 +11,7 @@ void bind_matter(nanobind::module_& module);      ///< Particles, Mesh, write_pn
 void bind_parts(nanobind::module_& module);       ///< materials, walls and colliders of a simulation
 void bind_reads(nanobind::module_& module);       ///< what is read of a simulation, rays
 void bind_simulation(nanobind::module_& module);  ///< Simulation, render
+void bind_observers(nanobind::module_& module);   ///< Simulation.attach
 void bind_pipeline(nanobind::module_& module);    ///< make, validate
 
 }  // namespace dreampm::python

@@ -96,10 +96,11 @@ void motion_structs(nb::module_& m) {
 }
 
 void bodies_structs(nb::module_& m) {
-  Section<model::Material>(m, "Material",
-                           "What matter is made of. `values` holds parameters by the keys of `dreampm materials TYPE`;\n"
-                           "those that are left out have their defaults. `dreampm.preset` gives sets of values.",
-                           "materials.")
+  Section<model::Material>(
+      m, "Material",
+      "What matter is made of. `values` holds parameters by the keys of `dreampm materials TYPE`;\n"
+      "those that are left out have their defaults. `dreampm.preset` gives sets of values.",
+      "materials.")
       .own("name", &model::Material::name, name_of_it)
       .own("type", &model::Material::type, "newtonian, elastic, snow, ...: of `dreampm materials`.")
       .own("values", &model::Material::values, "By key.")
@@ -213,7 +214,9 @@ void probes_structs(nb::module_& m) {
       .key("point", &FluxProbe::point)
       .key("normal", &FluxProbe::normal)
       .done();
-  Section<RegionProbe>(m, "RegionProbe", "What lies within a shape.", "probes.").key("shape", &RegionProbe::shape).done();
+  Section<RegionProbe>(m, "RegionProbe", "What lies within a shape.", "probes.")
+      .key("shape", &RegionProbe::shape)
+      .done();
   Section<ForceProbe>(m, "ForceProbe", "The force of the matter on a wall, collider or rigid body.", "probes.")
       .key("on", &ForceProbe::on)
       .done();
@@ -308,7 +311,8 @@ void bind_model(nb::module_& package) {
   nb::module_ m = package.def_submodule(
       "model", "The structs that a scene is built of, without a scene file: dreampm.Scene(model.Scene(...)).");
   bind_values_by_key(m);
-  space_structs(m), motion_structs(m), bodies_structs(m), colliders_structs(m), inflow_structs(m), probes_structs(m), render_structs(m);
+  space_structs(m), motion_structs(m), bodies_structs(m), colliders_structs(m), inflow_structs(m), probes_structs(m),
+      render_structs(m);
   Section<model::Scene>(m, "Scene", "A whole scene. dreampm.Scene(scene) checks and completes it.", "")
       .key("name", &model::Scene::name)
       .key("about", &model::Scene::about)

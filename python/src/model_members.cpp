@@ -65,21 +65,25 @@ void bind_values_by_key(nb::module_& m) {
           [](Values* self, nb::handle values) { new (self) Values(Member<Values>::from(values, "Values")); },
           nb::arg("values") = nb::dict(),
           nb::sig("def __init__(self, values: Values | collections.abc.Mapping[str, float] = ...) -> None"))
-      .def("__getitem__",
-           [](const Values& v, const std::string& key) {
-             for (const auto& [name, value] : v)
-               if (name == key) return value;
-             throw nb::key_error(key.c_str());
-           },
-           nb::arg("key"))
-      .def("__setitem__", [](Values& v, const std::string& key, double value) { v.set(key, value); }, nb::arg("key"),
-           nb::arg("value"))
-      .def("__delitem__", [](Values& v, const std::string& key) { v.erase(key); }, nb::arg("key"))
-      .def("__contains__",
-           [](const Values& v, const std::string& key) {
-             return std::any_of(v.begin(), v.end(), [&](const auto& one) { return one.first == key; });
-           },
-           nb::arg("key"))
+      .def(
+          "__getitem__",
+          [](const Values& v, const std::string& key) {
+            for (const auto& [name, value] : v)
+              if (name == key) return value;
+            throw nb::key_error(key.c_str());
+          },
+          nb::arg("key"))
+      .def(
+          "__setitem__", [](Values& v, const std::string& key, double value) { v.set(key, value); }, nb::arg("key"),
+          nb::arg("value"))
+      .def(
+          "__delitem__", [](Values& v, const std::string& key) { v.erase(key); }, nb::arg("key"))
+      .def(
+          "__contains__",
+          [](const Values& v, const std::string& key) {
+            return std::any_of(v.begin(), v.end(), [&](const auto& one) { return one.first == key; });
+          },
+          nb::arg("key"))
       .def("__len__", [](const Values& v) { return std::distance(v.begin(), v.end()); })
       .def("keys",
            [](const Values& v) {
@@ -87,8 +91,9 @@ void bind_values_by_key(nb::module_& m) {
              for (const auto& [name, value] : v) keys.push_back(name);
              return keys;
            })
-      .def("__iter__", [](nb::handle self) { return nb::iter(self.attr("keys")()); },
-           nb::sig("def __iter__(self) -> collections.abc.Iterator[str]"))
+      .def(
+          "__iter__", [](nb::handle self) { return nb::iter(self.attr("keys")()); },
+          nb::sig("def __iter__(self) -> collections.abc.Iterator[str]"))
       .def("__repr__", [](nb::handle self) {
         nb::dict all;
         for (nb::handle key : self.attr("keys")()) all[key] = self[key];

@@ -15,5 +15,6 @@ NB_MODULE(_dreampm, m) {
   python::bind_parts(m);
   python::bind_reads(m);
   python::bind_simulation(m);
+  python::bind_observers(m);
   python::bind_pipeline(m);
 }

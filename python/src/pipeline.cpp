@@ -9,8 +9,8 @@
 #include "dreampm/model/scene.h"
 #include "dreampm/pipeline/make.h"
 #include "dreampm/pipeline/replace_model.h"
-#include "dreampm/validate/report.h"
 #include "python_host.h"
+#include "validate/report.h"
 
 namespace dreampm::python {
 namespace {

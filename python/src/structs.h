@@ -58,8 +58,8 @@ struct Member {
   static M from(nb::handle given, const std::string& name) {
     const auto wrong = [&](const std::string& wanted) {
       const std::string shown = nb::cast<std::string>(nb::repr(given));
-      throw nb::type_error((name + ": " + (shown.size() > 60 ? shown.substr(0, 60) + "..." : shown) + ": must be " +
-                            wanted).c_str());
+      throw nb::type_error(
+          (name + ": " + (shown.size() > 60 ? shown.substr(0, 60) + "..." : shown) + ": must be " + wanted).c_str());
     };
     if constexpr (IsOptional<M>::value) {
       if (given.is_none()) return std::nullopt;
@@ -120,7 +120,8 @@ struct Member<std::array<bool, N>> {
 template <class T>
 class Struct {
  public:
-  Struct(nb::module_& module, const char* name, const std::string& doc) : name_(name), class_(module, name, doc.c_str()) {}
+  Struct(nb::module_& module, const char* name, const std::string& doc)
+      : name_(name), class_(module, name, doc.c_str()) {}
 
   template <class M>
   Struct& member(const char* name, M T::* at, const std::string& doc) {
@@ -156,7 +157,8 @@ class Struct {
               for (std::size_t i = 0; i < args.size(); ++i) (*members)[i].set(*made, args[i]);
               for (auto [key, value] : given) {
                 const std::string word = nb::cast<std::string>(key);
-                const auto known = std::find_if(members->begin(), members->end(), [&](const One& m) { return m.name == word; });
+                const auto known =
+                    std::find_if(members->begin(), members->end(), [&](const One& m) { return m.name == word; });
                 if (known == members->end()) {
                   std::string names;
                   for (const One& m : *members) names += (names.empty() ? "" : ", ") + m.name;

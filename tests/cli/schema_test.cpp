@@ -27,6 +27,16 @@ TEST_F(SchemaVerb, ThePageOfTheSceneIsWhatTheCommandPrints) {
   EXPECT_EQ(type("schema --markdown --json").code, 2);
 }
 
+TEST_F(SchemaVerb, TheColumnsOfTheLedgersPageAreWhatTheCommandPrints) {
+  const Typed t = type("schema --ledger");
+  ASSERT_EQ(t.code, 0) << t.err;
+  const std::string text = page("ledger.md");
+  const std::size_t from = text.find("## Columns\n"), to = text.find("\n## ", from + 1);
+  ASSERT_NE(to, std::string::npos);
+  EXPECT_EQ(t.out, text.substr(from, to - from)) << "print it anew: dreampm schema --ledger";
+  EXPECT_EQ(type("schema --ledger --json").code, 2);
+}
+
 TEST_F(SchemaVerb, EveryKeyTakesSomethingAndMeansSomething) {
   std::istringstream lines(type("schema").out);
   const std::regex row("\\| `([a-z_]+)` \\| (.*) \\| (.*) \\| (.*) \\|");

@@ -273,8 +273,8 @@ TEST_F(Usage, CheckAndTheLedgerTellOfStagesOfViscosity) {
 
   ASSERT_EQ(type("run --frames 2" + thick).code, 0);
   const Ledger ledger = read_ledger(folder / "out/dam/ledger.csv");
-  EXPECT_EQ(ledger.rows.at(0).values.at("stages"), 0) << "nothing has happened yet";
-  EXPECT_EQ(ledger.rows.at(1).values.at("stages"), stages);
+  EXPECT_EQ(ledger.rows.at(0).stages, 0) << "nothing has happened yet";
+  EXPECT_EQ(ledger.rows.at(1).stages, stages);
 
   const Typed far = type(
       "run --overwrite --frames 1 --set time.dt=1.7e-3 --set space.spacing=0.01 --set materials.water.density=100" +

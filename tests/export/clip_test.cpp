@@ -82,14 +82,14 @@ TEST_F(Clips, AFarPlaceIsATransformWhereTheFormatHasOne) {
   ClipInfo clip = clip_of_two();
   ClipFrame far = frame_of_two(1);
   clip.shift = far.particles.shift = {500000.25, 0, 0};
-  write_gltf_frame(clip, far, folder);
+  writer_of("gltf", clip, folder)->add(far);
   EXPECT_THAT(read_file(folder / "small_000001.glb"), HasSubstr("\"translation\":[500000.25,0.0,0.0]"));
-  const auto usd = write_usd_clip(clip, folder / "far.usda");
+  const auto usd = writer_of("usd", clip, folder / "far.usda");
   usd->add(far), usd->finish();
   EXPECT_THAT(read_file(folder / "far.usda"), HasSubstr("double3 xformOp:translate = (500000.25, 0, 0)"));
-  write_obj_frame(clip, far, folder);
+  writer_of("obj", clip, folder)->add(far);
   EXPECT_THAT(read_file(folder / "surface_000001.obj"), HasSubstr("v 500001.25 0 0"));
-  write_ply_frame(clip, far, folder);
+  writer_of("ply", clip, folder)->add(far);
   EXPECT_THAT(read_file(folder / "surface_000001.ply"), HasSubstr("comment shift 500000.25 0 0\n"));
 }
 

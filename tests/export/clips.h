@@ -20,6 +20,14 @@ inline ClipInfo clip_of_two(const Axes& axes = {}) {
   return clip;
 }
 
+/// The writer of a format by its name.
+inline std::unique_ptr<ClipWriter> writer_of(std::string_view format, const ClipInfo& clip,
+                                             const std::filesystem::path& target) {
+  for (const Format& f : formats())
+    if (f.name == format) return f.writer(clip, target);
+  throw std::logic_error("no such format");
+}
+
 /// 125 particles in [0, 0.5]^3 that fall at 2 m/s, and a tetrahedron.
 inline ClipFrame frame_of_two(int number, const Axes& axes = {}) {
   ClipFrame frame;

@@ -21,7 +21,7 @@ TEST_F(Volumes, HoldALevelSetAndVelocities) {
   const Vec3d shift{1e6, 0, 0};
   ClipInfo clip = clip_of_two(axes);
   clip.shift = shift;
-  write_vdb_frame(clip, frame_of_two(2, axes), folder);
+  writer_of("vdb", clip, folder)->add(frame_of_two(2, axes));
 
   openvdb::io::File file((folder / "small_000002.vdb").string());
   file.open();

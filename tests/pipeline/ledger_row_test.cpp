@@ -1,5 +1,5 @@
 // The volume that liquids take: its column of the ledger, through checkpoints too, and the warning.
-#include "dreampm/pipeline/ledger_row.h"
+#include "dreampm/run/ledger_row.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,6 +9,7 @@
 
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/checkpoint.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/setup/assemble.h"
@@ -63,15 +64,15 @@ FrameSums measured(std::optional<double> swollen) {
 TEST(Swollen, IsAShareOfTheLiquidsVolumeAlone) {
   const WaterOnSand start;
   const LedgerRow first = start.row({}, nullptr);
-  EXPECT_EQ(first.values.at("swollen"), 0) << "as it was put there";
-  EXPECT_NEAR(start.row(measured(5e-4), &first).values.at("swollen"), 0.5, 1e-12);
+  EXPECT_EQ(first.swollen, 0) << "as it was put there";
+  EXPECT_NEAR(start.row(measured(5e-4), &first).swollen, 0.5, 1e-12);
 }
 
 TEST(Swollen, StandsUntilItIsMeasuredAgain) {
   const WaterOnSand start;
   const LedgerRow first = start.row({}, nullptr), second = start.row(measured(2e-4), &first);
-  EXPECT_EQ(start.row(measured({}), &second).values.at("swollen"), second.values.at("swollen"));
-  EXPECT_NEAR(start.row(measured(0), &second).values.at("swollen"), 0, 1e-12);
+  EXPECT_EQ(start.row(measured({}), &second).swollen, second.swollen);
+  EXPECT_NEAR(start.row(measured(0), &second).swollen, 0, 1e-12);
   FrameSums sums = measured(3e-4);
   sums.add(StepSums{}, 1e-3);
   EXPECT_EQ(sums.swollen, 3e-4) << "a step without an anchoring measures nothing";
@@ -80,10 +81,10 @@ TEST(Swollen, StandsUntilItIsMeasuredAgain) {
 TEST(Swollen, IsNoNumberWhereNothingMeasuresIt) {
   const WaterOnSand loose({"materials.water.relaxation=0"});
   const LedgerRow first = loose.row({}, nullptr);
-  EXPECT_TRUE(std::isnan(first.values.at("swollen")));
-  EXPECT_TRUE(std::isnan(loose.row(measured({}), &first).values.at("swollen")));
+  EXPECT_TRUE(std::isnan(first.swollen));
+  EXPECT_TRUE(std::isnan(loose.row(measured({}), &first).swollen));
   const WaterOnSand dry({"materials.water={type: elastic, preset: jelly}"});
-  EXPECT_EQ(dry.row({}, nullptr).values.at("swollen"), 0) << "without a liquid nothing is swollen";
+  EXPECT_EQ(dry.row({}, nullptr).swollen, 0) << "without a liquid nothing is swollen";
 }
 
 TEST(Swollen, GoesThroughACheckpointWithinAFrame) {
@@ -101,10 +102,10 @@ TEST(Swollen, IsWarnedOfWhereMatterIsCalmForLongerThanItFlies) {
   WaterOnSand start;
   LedgerRow row = start.row(measured(1.2e-4), nullptr);
   // sqrt(g dx) = 0.443 m/s, 2 sqrt(dx/g) = 0.0903 s.
-  const double mass = row.values.at("mass"), limit = 9.81 * 0.02 / 2 * mass;
+  const double mass = row.mass, limit = 9.81 * 0.02 / 2 * mass;
   SwollenWatch watch;
   const auto look = [&](double time, double swollen, double kinetic) {
-    start.world.time = time, row.values["swollen"] = swollen, row.values["kinetic"] = kinetic;
+    start.world.time = time, row.swollen = swollen, row.kinetic = kinetic;
     return watch.look(start.world, row);
   };
   const auto lasts = [&](double swollen, double kinetic) {
@@ -131,7 +132,7 @@ TEST(Swollen, IsNotWarnedOfWhereThereIsTooLittleLiquidToMeasure) {
   for (const auto& [high, warned] : {std::pair("[0.06, 0.08, 0.06]", true), std::pair("[0.06, 0.08, 0.05]", false)}) {
     WaterOnSand drop({std::string("bodies.pool.shape.box.max=") + high});  // of 27 and 22.5 cells
     LedgerRow row = drop.row({}, nullptr);
-    row.values["swollen"] = 0.46, row.values["kinetic"] = 0;
+    row.swollen = 0.46, row.kinetic = 0;
     SwollenWatch watch;
     drop.world.time = 1;
     EXPECT_FALSE(watch.look(drop.world, row));

@@ -55,26 +55,26 @@ Ledger run(const std::string& text, SimulateOptions options, const std::vector<s
 
 double total(const Ledger& ledger, const std::string& column) {
   double sum = 0;
-  for (const LedgerRow& row : ledger.rows) sum += row.values.at(column);
+  for (const LedgerRow& row : ledger.rows) sum += ledger_number(row, column);
   return sum;
 }
 
 TEST(Strict, ARunWithEverythingCloses) {
   const Ledger l = run(everything, {});
   ASSERT_EQ(l.rows.size(), 20u);
-  EXPECT_GT(l.rows.back().values.at("left"), 100) << "matter left, and was counted";
+  EXPECT_GT(l.rows.back().left, 100) << "matter left, and was counted";
   EXPECT_GT(total(l, "left_mass"), 0);
   double received = 0, allowed = 0;
   for (const LedgerRow& row : l.rows) {
-    received += std::abs(row.values.at("wall_impulse_y"));
-    allowed += row.values.at("momentum_bound");
+    received += std::abs(row.wall_impulse.y);
+    allowed += row.momentum_bound;
   }
   EXPECT_LT(allowed, 1e-4 * received) << "the bound says something";
 }
 
 TEST(Strict, TheDoubleReferenceClosesToDoubleRoundOff) {
   const Ledger l = run(everything, {.folder = {}, .frames = 5, .threads = 0, .backend = "reference"});
-  EXPECT_LT(l.rows.back().values.at("momentum_bound"), 1e-12);
+  EXPECT_LT(l.rows.back().momentum_bound, 1e-12);
 }
 
 TEST(Strict, WithPeriodicAxesToo) {
@@ -97,9 +97,9 @@ bodies:
 )",
                        {});
   double weight = 0;
-  for (const LedgerRow& row : l.rows) weight = std::max(weight, std::abs(row.values.at("gravity")));
+  for (const LedgerRow& row : l.rows) weight = std::max(weight, std::abs(row.gravity));
   EXPECT_GT(weight, 0);
-  EXPECT_NEAR(l.rows.back().values.at("gravity"), l.rows.front().values.at("gravity"), 0.01 * weight);
+  EXPECT_NEAR(l.rows.back().gravity, l.rows.front().gravity, 0.01 * weight);
 }
 
 // Friction is for solids and grains: at a wall that rubs a still liquid is as still as at one that
@@ -127,12 +127,12 @@ materials: {water: {type: newtonian, preset: water, max_compression: 0.02}}
 bodies: {p: {material: water, shape: {box: {size: [0.12, 0.12, 0.12]}, center: [0.15, 0.15, 0.15]}}}
 )";
   const Ledger l = run(cube, {});
-  EXPECT_LT(l.rows.back().values.at("elastic"), 0) << "or this tests nothing";
+  EXPECT_LT(l.rows.back().elastic, 0) << "or this tests nothing";
   for (const LedgerRow& row : l.rows)
     for (const char* bound : {"momentum_bound", "angular_bound", "energy_bound"})
-      EXPECT_TRUE(std::isfinite(row.values.at(bound))) << bound << " of frame " << row.frame;
+      EXPECT_TRUE(std::isfinite(ledger_number(row, bound))) << bound << " of frame " << row.frame;
   // 1.7 kg: the bound still says something.
-  EXPECT_LT(l.rows.back().values.at("momentum_bound"), 1e-7);
+  EXPECT_LT(l.rows.back().momentum_bound, 1e-7);
   run(cube, {.folder = {}, .frames = 3, .threads = 0, .backend = "reference"});
 }
 
@@ -145,8 +145,8 @@ materials: {water: {type: newtonian, preset: water}}
 bodies: {p: {material: water, shape: {box: {size: [0.08, 0.08, 0.08]}, center: [0.1, 0.1, 0.1]}, velocity: [0, -3, 0]}}
 )",
                        {});
-  EXPECT_EQ(l.rows.back().values.at("particles"), 0);
-  EXPECT_EQ(l.rows.back().values.at("energy_bound"), 0);
+  EXPECT_EQ(l.rows.back().particles, 0);
+  EXPECT_EQ(l.rows.back().energy_bound, 0);
 }
 
 // One step a frame: what is stored grows by its rate.
@@ -164,13 +164,13 @@ bodies: {cube: {material: m, shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.15
       fall{"gravity=[0, -9.81, 0]", "bodies.cube.shape.center=[0.15, 0.2, 0.15]"};
   for (const auto& matter : {blow, liquid, fall}) {
     const Ledger l = run(cube, {}, matter);
-    const auto stored = [](const LedgerRow& row) { return row.values.at("elastic") + row.values.at("gravity"); };
+    const auto stored = [](const LedgerRow& row) { return row.elastic + row.gravity; };
     double most = 0;
-    for (const LedgerRow& row : l.rows) most = std::max(most, std::abs(row.values.at("power")));
+    for (const LedgerRow& row : l.rows) most = std::max(most, std::abs(row.power));
     EXPECT_GT(most, 3) << "or this tests nothing";
     for (std::size_t i = 1; i < l.rows.size(); ++i) {
-      ASSERT_EQ(l.rows[i].values.at("substeps"), 1);
-      const double mean = (l.rows[i].values.at("power") + l.rows[i - 1].values.at("power")) / 2;
+      ASSERT_EQ(l.rows[i].substeps, 1);
+      const double mean = (l.rows[i].power + l.rows[i - 1].power) / 2;
       // A step takes the rate at its end: off by half of what the rate changes by, a twentieth at
       // most here.
       EXPECT_NEAR((stored(l.rows[i]) - stored(l.rows[i - 1])) / 1e-4, mean, 0.05 * most) << i;
@@ -184,7 +184,8 @@ TEST(Strict, AGapIsSeenAndNamed) {
   EXPECT_FALSE(ledger_breach(before, now));
   const auto breach = [&](const std::string& column, double factor, double more) {
     LedgerRow other = now;
-    other.values.at(column) = other.values.at(column) * factor + more;
+    double& number = ledger_number(other, column);
+    number = number * factor + more;
     return ledger_breach(before, other).value_or("none");
   };
   // A ten-thousandth of what walls and colliders gave.
@@ -197,13 +198,13 @@ TEST(Strict, AGapIsSeenAndNamed) {
   EXPECT_NE(breach("particles", 1, -1).find("1 particles are neither there nor have left"), std::string::npos);
   EXPECT_NE(breach("momentum_z", 1, std::nan("")).find("momentum_z"), std::string::npos)
       << "what is no number is a gap";
-  const double moved = now.values.at("kinetic") + before.values.at("kinetic");
+  const double moved = now.kinetic + before.kinetic;
   EXPECT_NE(breach("dissipated_rest", 0, -0.5 * moved).find("energy:"), std::string::npos);
   EXPECT_NE(breach("dissipated_rest", 1, std::nan("")).find("energy:"), std::string::npos);
   EXPECT_NE(breach("dissipated_transfer", 0, -0.5 * moved).find("energy:"), std::string::npos);
   // What nodes get and particles do not take over stays nowhere.
   LedgerRow loop = now;
-  loop.values.at("dissipated_rest") = -0.5 * moved, loop.values.at("dissipated_transfer") = 0.5 * moved;
+  loop.dissipated_rest = -0.5 * moved, loop.dissipated_transfer = 0.5 * moved;
   EXPECT_FALSE(ledger_breach(before, loop));
 }
 
@@ -234,7 +235,7 @@ materials: {block: {type: elastic, density: 1000, youngs_modulus: 2.0e5, poisson
 bodies: {block: {material: block, shape: {box: {min: [0.1, 0, 0.1], max: [0.3, 0.05, 0.3]}}, velocity: [1, 0, 0], sample: {pattern: lattice}}}
 )",
                        {});
-  const double start = l.rows[0].values.at("kinetic");  // 2 kg at 1 m/s; it stands after 0.34 s
+  const double start = l.rows[0].kinetic;  // 2 kg at 1 m/s; it stands after 0.34 s
   EXPECT_NEAR(start, 1, 1e-6);
   EXPECT_NEAR(total(l, "dissipated_friction"), start, 0.02 * start);
   EXPECT_NEAR(total(l, "dissipated_rest"), 0, 0.02 * start);
@@ -250,7 +251,7 @@ bodies: {ball: {material: snow, shape: {sphere: {radius: 0.08}, center: [0.2, 0.
 )",
                        {});
   const double lost = total(l, "dissipated");
-  EXPECT_GT(lost, 0.9 * l.rows[0].values.at("kinetic"));
+  EXPECT_GT(lost, 0.9 * l.rows[0].kinetic);
   EXPECT_NEAR(total(l, "dissipated_plasticity") + total(l, "dissipated_transfer"), lost, 0.05 * lost);
   EXPECT_EQ(total(l, "dissipated_viscosity"), 0);
 }
@@ -265,7 +266,7 @@ materials: {jelly: {type: elastic, preset: jelly}}
 bodies: {cube: {material: jelly, shape: {box: {size: [0.15, 0.1, 0.1]}, center: [0.3, 0.3, 0.3]}, spin: [0, 0, 8], sample: {pattern: lattice}}}
 )",
                        {});
-  const double start = l.rows[0].values.at("kinetic");
+  const double start = l.rows[0].kinetic;
   EXPECT_LT(std::abs(total(l, "dissipated")), 0.02 * start);
   EXPECT_EQ(total(l, "dissipated_plasticity"), 0);
   EXPECT_EQ(total(l, "dissipated_friction"), 0);
@@ -297,8 +298,8 @@ TEST(Energy, ThatApicLosesOnTheWayToTheGridIsInTheRest) {
   // The same matter but for rounding, and the grid keeps what arrives on it: both ways are
   // measured.
   const Ledger both = dam_break("asflip", {"materials.water.flip_blend=1.0e-9", "materials.water.separation=0"});
-  const double kinetic = apic.rows.back().values.at("kinetic");
-  EXPECT_NEAR(both.rows.back().values.at("kinetic"), kinetic, 1e-5 * kinetic);
+  const double kinetic = apic.rows.back().kinetic;
+  EXPECT_NEAR(both.rows.back().kinetic, kinetic, 1e-5 * kinetic);
   const double back = share(both, "transfer") - there;
   std::printf("apic: back %.4f, rest without it %.4f\n", back, share(both, "rest"));
   EXPECT_GT(back, 0.7 * there);
@@ -314,7 +315,7 @@ TEST(Energy, ThatParticlesKeepIsNeitherLostNorGained) {
     const Ledger l = dam_break(transfer);
     const double lost = total(l, "dissipated"), given = share(l, "transfer"), rest = share(l, "rest");
     std::printf("%s: transfer %.4f, rest %.4f of %.3g J\n", transfer, given, rest, lost);
-    for (const LedgerRow& row : l.rows) EXPECT_GT(row.values.at("dissipated_transfer"), -1e-4 * lost) << transfer;
+    for (const LedgerRow& row : l.rows) EXPECT_GT(row.dissipated_transfer, -1e-4 * lost) << transfer;
     EXPECT_GT(given, 0.5) << transfer;
     EXPECT_LT(given, 1) << transfer;
     EXPECT_GT(rest, 0) << transfer;

@@ -360,3 +360,20 @@ def test_help_reads_well():
     undocumented = [n for n in dir(dm.Simulation)
                     if not n.startswith("_") and not getattr(dm.Simulation, n).__doc__]
     assert undocumented == []
+
+
+def test_attached_files_are_those_of_the_command(tmp_path):
+    scene = SOURCE / "scenes/dam-break.yaml"
+    subprocess.run([COMMAND, "run", scene, "--variant", "tiny", "--frames", "4", "--out", tmp_path / "run"], check=True,
+                   capture_output=True)
+    sim = dm.Simulation(dm.Scene.load(scene, variant="tiny"))
+    sim.attach(dm.LedgerFile(tmp_path / "own/ledger.csv"))
+    sim.attach(dm.ParticleFiles(tmp_path / "own/particles"))
+    sim.attach(dm.CheckpointFiles(tmp_path / "own/saved", every=2))
+    sim.advance_frames(3)
+    for file in ("ledger.csv", "particles/particles_000001.ply", "particles/particles_000004.ply"):
+        assert (tmp_path / "own" / file).read_bytes() == (tmp_path / "run" / file).read_bytes(), file
+    later = dm.Simulation(dm.Scene.load(tmp_path / "own/saved/checkpoint_000004.yaml"))
+    assert later.hash() == sim.hash()
+    with pytest.raises(dm.InputError, match="mood"):
+        sim.attach(dm.ParticleFiles(tmp_path / "own", attributes=["mood"]))

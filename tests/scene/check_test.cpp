@@ -30,13 +30,19 @@ model::Scene of_each() {
   s.colliders = {{"post", Shape::cylinder({0.5, 0.2, 0.5}, 0.1, 0.2) - Shape::sphere({0.5, 0.3, 0.5}, 0.08)},
                  {.name = "crate", .shape = Shape::box({0.7, 0.7, 0.7}, {0.8, 0.8, 0.8}), .rigid = model::Rigid{400.0}},
                  {.name = "nail", .shape = Shape::sphere({0.2, 0.2, 0.2}, 0.05), .holds = true, .pin = true}};
-  s.emitters = {{.name = "tap", .material = "water", .shape = Shape::sphere({0.2, 0.9, 0.2}, 0.05),
-                 .velocity = Vec3d{0, -1, 0}, .pool = 100}};
+  s.emitters = {{.name = "tap",
+                 .material = "water",
+                 .shape = Shape::sphere({0.2, 0.9, 0.2}, 0.05),
+                 .velocity = Vec3d{0, -1, 0},
+                 .pool = 100}};
   s.sinks = {{"drain", Shape::box({0.4, 0, 0.4}, {0.6, 0.05, 0.6})}};
   s.fields = {{"gust", "wind", {}, {{"velocity", {3, 0, 0}}}}};
   s.fields[0].type = "drag", s.fields[0].numbers = {{"rate", 2}};
-  s.probes = {{"push", 0, ForceProbe{"floor"}}, {"track", 0, PoseProbe{"crate"}}, {"come", 0, InflowProbe{"tap"}},
-              {"wide", 0, ExtentProbe{0, "water"}}, {"point", 0, PointProbe{"cube", {0.2, 0.2, 0.2}}}};
+  s.probes = {{"push", 0, ForceProbe{"floor"}},
+              {"track", 0, PoseProbe{"crate"}},
+              {"come", 0, InflowProbe{"tap"}},
+              {"wide", 0, ExtentProbe{0, "water"}},
+              {"point", 0, PointProbe{"cube", {0.2, 0.2, 0.2}}}};
   s.render.looks["crate"] = model::Look::wood();
   return s;
 }
@@ -91,7 +97,8 @@ TEST(Check, EveryWrongMemberIsNamedByItsPath) {
       {[](auto& s) { s.materials[0].transfer = "flop"; }, "materials.water.transfer is 'flop'"},
       {[](auto& s) { s.materials[0].transfer_values.set("flip_blend", 1); }, "flip_blend is only for transfer flip"},
       {[](auto& s) { s.materials[1].transfer_values.set("flip_blend", 2); }, "materials.jelly.flip_blend is 2"},
-      {[](auto& s) { s.bodies[0].material = "watr"; }, "bodies.drop.material: no material 'watr'; did you mean 'water'"},
+      {[](auto& s) { s.bodies[0].material = "watr"; },
+       "bodies.drop.material: no material 'watr'; did you mean 'water'"},
       {[](auto& s) { s.bodies[0].shape = Shape::sphere({}, -1); }, "bodies.drop.shape.sphere.radius is -1"},
       {[](auto& s) { s.bodies[0].shape.center.reset(); }, "missing key 'bodies.drop.shape.center'"},
       {[](auto& s) { s.bodies[0].shape = Shape::plane({}, {0, 1, 0}); }, "a body must end somewhere"},
@@ -146,7 +153,8 @@ TEST(Check, EveryKeyOfTheTablesHasAMeaning) {
 }
 
 TEST(Check, PartsOfTextAreReadAlone) {
-  EXPECT_EQ(std::get<SphereShape>(parse_shape_text("{sphere: {radius: 0.1}, center: [0, 1, 0]}", "s").form).radius, 0.1);
+  EXPECT_EQ(std::get<SphereShape>(parse_shape_text("{sphere: {radius: 0.1}, center: [0, 1, 0]}", "s").form).radius,
+            0.1);
   EXPECT_EQ(parse_material_text("{type: newtonian, preset: honey}", "m").values["density"], 1418);
   EXPECT_EQ(parse_look_text("{type: metal}", "l").roughness, 0.3);
   EXPECT_THAT([] { parse_shape_text("{spher: {radius: 0.1}}", "s"); },

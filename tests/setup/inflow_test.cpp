@@ -121,13 +121,13 @@ TEST(Inflow, TheLedgerClosesWithWhatComesAndGoes) {
   simulate(scene.model(), {scene.file(), {}}, options);
   const Ledger ledger = read_ledger(folder / "ledger.csv");
   double came = 0, went = 0;
-  for (const LedgerRow& row : ledger.rows) came += row.values.at("entered_mass"), went += row.values.at("left_mass");
+  for (const LedgerRow& row : ledger.rows) came += row.entered_mass, went += row.left_mass;
   std::printf("%.4g kg came, %.4g kg went\n", came, went);
   // The shape itself, and what comes through its section, as seen along the diagonal, in a second.
   const double volume = 0.04 * std::sqrt(2.0) * 0.04 * std::sqrt(0.5) + 0.04 * jet_area;
   EXPECT_NEAR(came, 998.2 * volume, 0.015 * 998.2 * volume);
   EXPECT_GT(went, 0.3 * came);
-  EXPECT_NEAR(ledger.rows.back().values.at("mass"), ledger.rows.front().values.at("mass") + came - went, 1e-9);
+  EXPECT_NEAR(ledger.rows.back().mass, ledger.rows.front().mass + came - went, 1e-9);
   std::filesystem::remove_all(folder);
 }
 
@@ -281,7 +281,7 @@ TEST(Inflow, AColliderTakesOutWhatTouchesIt) {
   EXPECT_LE(out, in);
   EXPECT_EQ(there.rows.back().at(4), 1);  // it does not turn
   const Ledger ledger = read_ledger(folder / "ledger.csv");
-  EXPECT_NEAR(ledger.rows.back().values.at("particles"), in - out, 0.5);
+  EXPECT_NEAR(ledger.rows.back().particles, in - out, 0.5);
   std::filesystem::remove_all(folder);
 }
 

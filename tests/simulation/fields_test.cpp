@@ -82,7 +82,7 @@ Squeezed run(const std::string& text) {
   simulate(scene_of(text), {"blown.yaml", std::nullopt}, options);
   Squeezed s;
   for (const LedgerRow& row : read_ledger(options.folder / "ledger.csv").rows)
-    s.last = 1 - row.values.at("j_min"), s.most = std::max(s.most, s.last);
+    s.last = 1 - row.j_min, s.most = std::max(s.most, s.last);
   std::printf("squeezed by %.4f, in the end by %.4f\n", s.most, s.last);
   return s;
 }

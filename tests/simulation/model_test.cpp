@@ -39,8 +39,9 @@ TEST(Model, AWrongSceneIsRefusedByPath) {
   model::Scene wrong = same_as_the_file();
   wrong.bodies[1].material = "jely";
   wrong.space.spacing = -1;
-  EXPECT_THAT(check(wrong), testing::UnorderedElementsAre("space.spacing is -1: must be above 0 m",
-                                                          "bodies.cube.material: no material 'jely'; did you mean 'jelly'?"));
+  EXPECT_THAT(check(wrong),
+              testing::UnorderedElementsAre("space.spacing is -1: must be above 0 m",
+                                            "bodies.cube.material: no material 'jely'; did you mean 'jelly'?"));
   EXPECT_THAT([&] { Scene scene{wrong}; },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("dam: error: space.spacing is -1")));
 }
@@ -51,9 +52,10 @@ TEST(Model, EditsReadNoFile) {
   const fs::path folder = fs::path(DM_BINARY_DIR) / "edits_read_no_file", before = fs::current_path();
   fs::remove_all(folder);
   make_folder(folder);
-  replace_file_text(folder / "block.off",
-                    "OFF\n8 12 0\n0 0 0\n.1 0 0\n.1 .1 0\n0 .1 0\n0 0 .1\n.1 0 .1\n.1 .1 .1\n0 .1 .1\n3 0 2 1\n3 0 3 2\n"
-                    "3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
+  replace_file_text(
+      folder / "block.off",
+      "OFF\n8 12 0\n0 0 0\n.1 0 0\n.1 .1 0\n0 .1 0\n0 0 .1\n.1 0 .1\n.1 .1 .1\n0 .1 .1\n3 0 2 1\n3 0 3 2\n"
+      "3 4 5 6\n3 4 6 7\n3 0 1 5\n3 0 5 4\n3 1 2 6\n3 1 6 5\n3 2 3 7\n3 2 7 6\n3 3 0 4\n3 3 4 7\n");
   replace_file_text(folder / "scene.yaml",
                     "dreampm: 1\nname: b\nspace: {max: [0.4, 0.4, 0.2], spacing: 0.02}\n"
                     "materials: {removed: {type: newtonian}}\n"

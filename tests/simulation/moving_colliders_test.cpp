@@ -21,7 +21,7 @@ using namespace test;
 using testing::HasSubstr;
 
 /// A scene that steps, and what its first collider gave to the matter.
-struct Moved : Observer<float> {
+struct Moved : Observer {
   explicit Moved(const std::string& yaml)
       : start(assemble(parse_scene(yaml, "moving.yaml").model(), "moving.yaml")),
         engine(as_world<float>(start.world), make_cpu_backend("auto")) {

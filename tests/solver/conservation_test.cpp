@@ -2,7 +2,7 @@
 // gains no energy.
 #include <gtest/gtest.h>
 
-#include "dreampm/validate/measure/drift.h"
+#include "validate/measure/drift.h"
 #include "worlds.h"
 
 namespace dreampm::conservation_test {

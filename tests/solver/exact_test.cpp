@@ -6,9 +6,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "dreampm/validate/measure/column.h"
-#include "dreampm/validate/measure/fit.h"
 #include "liquids.h"
+#include "validate/measure/column.h"
+#include "validate/measure/fit.h"
 
 namespace dreampm::exact_test {
 namespace {

@@ -1,6 +1,6 @@
 // Liquids at rest under their own weight, for tests.
 #pragma once
-#include "dreampm/validate/measure/hydrostatic.h"
+#include "validate/measure/hydrostatic.h"
 #include "worlds.h"
 
 namespace dreampm::test {

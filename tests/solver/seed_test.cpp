@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "dreampm/base/file.h"
-#include "dreampm/validate/measure/seed.h"
+#include "validate/measure/seed.h"
 #include "worlds.h"
 
 namespace dreampm::seed_test {

@@ -8,7 +8,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/solver/step.h"
-#include "dreampm/validate/measure/motion.h"
+#include "validate/measure/motion.h"
 
 namespace dreampm::test {
 using validate::Field;

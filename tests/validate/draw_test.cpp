@@ -1,5 +1,5 @@
 // Scenes by chance, and how hard their materials can be pressed.
-#include "dreampm/validate/draw.h"
+#include "validate/draw.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "dreampm/validate/crush.h"
+#include "validate/crush.h"
 
 namespace dreampm::validate {
 namespace {

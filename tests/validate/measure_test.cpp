@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "dreampm/base/error.h"
-#include "dreampm/validate/measure/fit.h"
-#include "dreampm/validate/measure/hydrostatic.h"
-#include "dreampm/validate/measure/pairs.h"
-#include "dreampm/validate/measure/table.h"
-#include "dreampm/validate/measure/volume.h"
+#include "validate/measure/fit.h"
+#include "validate/measure/hydrostatic.h"
+#include "validate/measure/pairs.h"
+#include "validate/measure/table.h"
+#include "validate/measure/volume.h"
 
 namespace dreampm::validate {
 namespace {

@@ -1,5 +1,5 @@
 // The page of the validation: made in pieces, and of this version.
-#include "dreampm/validate/page.h"
+#include "validate/page.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

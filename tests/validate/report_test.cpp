@@ -9,10 +9,10 @@
 #include <set>
 
 #include "dreampm/base/file.h"
-#include "dreampm/validate/page.h"
-#include "dreampm/validate/plot.h"
-#include "dreampm/validate/report.h"
-#include "dreampm/validate/validation_run.h"
+#include "validate/page.h"
+#include "validate/plot.h"
+#include "validate/report.h"
+#include "validate/validation_run.h"
 
 namespace dreampm::validate {
 namespace {

@@ -1,4 +1,4 @@
-#include "dreampm/validate/revolve.h"
+#include "validate/revolve.h"
 
 #include <gtest/gtest.h>
 

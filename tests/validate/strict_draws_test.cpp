@@ -5,7 +5,7 @@
 
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/pipeline/strict.h"
-#include "dreampm/validate/draw.h"
+#include "validate/draw.h"
 
 namespace dreampm::validate {
 namespace {

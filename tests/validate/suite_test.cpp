@@ -1,5 +1,5 @@
 // Cases side by side.
-#include "dreampm/validate/suite.h"
+#include "validate/suite.h"
 
 #include <gtest/gtest.h>
 

@@ -42,9 +42,9 @@ struct MeshSequence {
 /// A solid that matter meets. Colliders, rigid bodies and pins share their names.
 struct Collider {
   std::string name;
-  Shape shape{};                          ///< not used with a sequence
-  std::optional<MeshSequence> sequence{}; ///< in place of a shape: one that deforms
-  WallType type = WallType::separate;     ///< separate, slip or stick
+  Shape shape{};                           ///< not used with a sequence
+  std::optional<MeshSequence> sequence{};  ///< in place of a shape: one that deforms
+  WallType type = WallType::separate;      ///< separate, slip or stick
   /// Coulomb's coefficient, 0 to 100; of separate and slip. Between rigid bodies the product of
   /// both.
   double friction = 0;

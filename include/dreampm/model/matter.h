@@ -63,8 +63,8 @@ namespace model {
 /// What matter is made of: a type of `dreampm materials` with values of its parameters. False and
 /// true, and other words, are numbers: `dreampm materials TYPE` lists them.
 struct Material {
-  std::string name;               ///< as bodies and emitters call it
-  std::string type = "newtonian"; ///< newtonian, elastic, snow, ...
+  std::string name;                ///< as bodies and emitters call it
+  std::string type = "newtonian";  ///< newtonian, elastic, snow, ...
   /// By key. Keys that are not there have their defaults.
   Values values{};
   std::string transfer = "apic";  ///< between its particles and the grid: apic, flip or asflip

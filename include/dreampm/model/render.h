@@ -47,10 +47,10 @@ struct Look {
   double ior = 1.333;               ///< dielectric, 1.01 to 3
   Vec3d absorption{6.0, 1.7, 0.5};  ///< dielectric: 1/m, red green blue
   Vec3d color{0.93, 0.33, 0.23};    ///< all but dielectric: sRGB 0..1
-  double roughness = 1;             ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
-  std::optional<double> ring{};     ///< wood: m from ring to ring; absent: by the size of the body
-  std::optional<Vec3d> grain{};     ///< wood: along its fibers, in the scene's axes at rest; absent: the longest way
-  double radius = 0.5;              ///< spheres: in units of the spacing
+  double roughness = 1;          ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
+  std::optional<double> ring{};  ///< wood: m from ring to ring; absent: by the size of the body
+  std::optional<Vec3d> grain{};  ///< wood: along its fibers, in the scene's axes at rest; absent: the longest way
+  double radius = 0.5;           ///< spheres: in units of the spacing
   bool operator==(const Look&) const = default;
 
   /// Clear matter, such as water or glass.
@@ -79,12 +79,12 @@ struct Look {
 };
 
 struct Camera {
-  bool fit_basin = true;   ///< it stands so that the box of the scene fills the picture; else from, to
-  double azimuth = 60;     ///< degrees, with fit_basin
-  double elevation = 14;   ///< degrees, with fit_basin
-  double fill = 0.84;      ///< share of the frame that the box fills, with fit_basin
-  double fov = 34;         ///< degrees, vertical
-  Vec3d from{}, to{};      ///< m, without fit_basin
+  bool fit_basin = true;  ///< it stands so that the box of the scene fills the picture; else from, to
+  double azimuth = 60;    ///< degrees, with fit_basin
+  double elevation = 14;  ///< degrees, with fit_basin
+  double fill = 0.84;     ///< share of the frame that the box fills, with fit_basin
+  double fov = 34;        ///< degrees, vertical
+  Vec3d from{}, to{};     ///< m, without fit_basin
   bool operator==(const Camera&) const = default;
 };
 

@@ -97,18 +97,7 @@ struct Format {
   std::unique_ptr<ClipWriter> (*writer)(const ClipInfo& clip, const std::filesystem::path& target);
   bool one_file() const { return files != nullptr; }
 };
+/// The list of export/formats.h.
 const std::vector<Format>& formats();
-
-/// Files of one frame in a folder.
-void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);
-void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);
-void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);
-void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const std::filesystem::path& folder);
-/// Files of all frames.
-std::unique_ptr<ClipWriter> write_usd_clip(const ClipInfo& clip, const std::filesystem::path& file);
-std::unique_ptr<ClipWriter> write_vtkhdf_clip(const ClipInfo& clip, const std::filesystem::path& file);
-/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface
-/// and FILE-colliders.
-std::vector<std::filesystem::path> vtkhdf_files(const ClipInfo& clip, const std::filesystem::path& file);
 
 }  // namespace dreampm::exchange

@@ -9,7 +9,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
-#include "dreampm/export/clip.h"
+#include "dreampm/export/formats.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/version.h"
@@ -172,8 +172,6 @@ void add_camera(Document& document, const ClipCamera& c) {
                                  0, c.eye.x, c.eye.y, c.eye.z, 1}}});
 }
 
-}  // namespace
-
 void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   Document document(clip);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
@@ -187,6 +185,12 @@ void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pa
   document["asset"]["extras"] = {
       {"frame", frame.number}, {"time", clip.time(frame.number)}, {"fps", clip.fps}, {"units", clip.units()}};
   document.write(folder / numbered(clip.name, frame.number, ".glb"));
+}
+
+}  // namespace
+
+Format gltf_format() {
+  return {"gltf", "a .glb a frame, with materials and a camera", ".glb", true, nullptr, each_frame<write_gltf_frame>};
 }
 
 }  // namespace dreampm::exchange

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "dreampm/base/file.h"
-#include "dreampm/export/clip.h"
+#include "dreampm/export/formats.h"
 #include "dreampm/io/byte_sink.h"
 #include "dreampm/io/numbered.h"
 
@@ -27,8 +27,6 @@ void write_obj_points(const fs::path& file, const ClipInfo& clip, const ClipFram
   });
 }
 
-}  // namespace
-
 void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   const std::string text = note(clip, frame.number);
   if (clip.particles) write_particles(folder / numbered("particles", frame.number, ".ply"), frame.particles, text);
@@ -47,6 +45,15 @@ void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   for (std::size_t o = 0; o < clip.objects.size(); ++o)
     write_obj(folder / numbered(clip.object_name(o), frame.number, ".obj"), placed(clip.objects[o], frame.objects[o]),
               clip.shift, text);
+}
+
+}  // namespace
+
+Format ply_format() {
+  return {"ply", "particles and meshes, a file a frame", ".ply", false, nullptr, each_frame<write_ply_frame>};
+}
+Format obj_format() {
+  return {"obj", "the same without velocities", ".obj", false, nullptr, each_frame<write_obj_frame>};
 }
 
 }  // namespace dreampm::exchange

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <set>
 
-#include "dreampm/export/clip.h"
+#include "dreampm/export/formats.h"
 #include "dreampm/export/usd_samples.h"
 
 namespace dreampm::exchange {
@@ -349,10 +349,15 @@ def Xform "{}" (
   std::vector<std::unique_ptr<MeshPrim>> deforming_;  ///< where it deforms one here
 };
 
-}  // namespace
-
 std::unique_ptr<ClipWriter> write_usd_clip(const ClipInfo& clip, const fs::path& file) {
   return std::make_unique<UsdWriter>(clip, file);
+}
+
+}  // namespace
+
+Format usd_format() {
+  const auto itself = [](const ClipInfo&, const fs::path& target) { return std::vector<fs::path>{target}; };
+  return {"usd", "one animated .usda", ".usda", false, itself, write_usd_clip};
 }
 
 }  // namespace dreampm::exchange

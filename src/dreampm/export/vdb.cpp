@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "dreampm/export/clip.h"
+#include "dreampm/export/formats.h"
 #include "dreampm/import/vdb_file.h"
 #include "dreampm/import/vdb_mesh.h"
 #include "dreampm/io/numbered.h"
@@ -59,8 +59,6 @@ openvdb::Vec3SGrid::Ptr velocity_grid(const ParticleFrame& frame, double spacing
   return grid;
 }
 
-}  // namespace
-
 void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   openvdb::initialize();
   openvdb::GridPtrVec grids;
@@ -84,6 +82,12 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   about.insertMeta("fps", openvdb::DoubleMetadata(clip.fps));
   about.insertMeta("units", openvdb::StringMetadata(clip.units()));
   write_vdb_file(folder / numbered(clip.name, frame.number, ".vdb"), {grids.begin(), grids.end()}, about);
+}
+
+}  // namespace
+
+Format vdb_format() {
+  return {"vdb", "a level set and velocities, a file a frame", ".vdb", false, nullptr, each_frame<write_vdb_frame>};
 }
 
 }  // namespace dreampm::exchange

@@ -7,7 +7,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/narrow.h"
 #include "dreampm/base/replacement.h"
-#include "dreampm/export/clip.h"
+#include "dreampm/export/formats.h"
 #include "dreampm/export/hdf5_output.h"
 
 namespace dreampm::exchange {
@@ -239,6 +239,20 @@ void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<cons
   out.point_data(what, number.data(), n, 0);
 }
 
+/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface
+/// and FILE-colliders.
+std::vector<fs::path> vtkhdf_files(const ClipInfo& clip, const fs::path& file) {
+  std::vector<std::string> parts;
+  if (clip.particles) parts.emplace_back("particles");
+  if (!clip.meshed.empty()) parts.emplace_back("surface");
+  if (!clip.objects.empty()) parts.emplace_back("colliders");
+  if (parts.size() < 2) return {file};
+  std::vector<fs::path> files;
+  for (const std::string& part : parts)
+    files.push_back(file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), part, file.extension().string()));
+  return files;
+}
+
 class VtkHdfWriter final : public ClipWriter {
  public:
   VtkHdfWriter(const ClipInfo& clip, const fs::path& file) : clip_(clip) {
@@ -275,22 +289,14 @@ class VtkHdfWriter final : public ClipWriter {
   std::vector<std::int32_t> colliders_;  ///< numbers of the objects
 };
 
-}  // namespace
-
-std::vector<fs::path> vtkhdf_files(const ClipInfo& clip, const fs::path& file) {
-  std::vector<std::string> parts;
-  if (clip.particles) parts.emplace_back("particles");
-  if (!clip.meshed.empty()) parts.emplace_back("surface");
-  if (!clip.objects.empty()) parts.emplace_back("colliders");
-  if (parts.size() < 2) return {file};
-  std::vector<fs::path> files;
-  for (const std::string& part : parts)
-    files.push_back(file.parent_path() / fmt::format("{}-{}{}", file.stem().string(), part, file.extension().string()));
-  return files;
-}
-
 std::unique_ptr<ClipWriter> write_vtkhdf_clip(const ClipInfo& clip, const fs::path& file) {
   return std::make_unique<VtkHdfWriter>(clip, file);
+}
+
+}  // namespace
+
+Format vtkhdf_format() {
+  return {"vtkhdf", "a time series for ParaView and VTK", ".vtkhdf", false, vtkhdf_files, write_vtkhdf_clip};
 }
 
 }  // namespace dreampm::exchange

@@ -126,10 +126,8 @@ Vec3i cell_at(const HollowCells& h, const Vec3d& p) {
   return {static_cast<int>(std::floor(q.x)), static_cast<int>(std::floor(q.y)), static_cast<int>(std::floor(q.z))};
 }
 
-}  // namespace
-
-HollowCells hollow_cells(const PlacedHollow& hollow, double dx, const Vec3d& up,
-                         std::span<const std::shared_ptr<const Region>> blocking) {
+/// A grid of cells about a hollow.
+HollowCells grid_about(const PlacedHollow& hollow, double dx, const Vec3d& up) {
   if (!(dx > 0) || !std::isfinite(dx)) fail_input("a cell of {} m: a length above 0 is wanted", dx);
   HollowCells out;
   out.region = hollow.region;
@@ -146,88 +144,123 @@ HollowCells hollow_cells(const PlacedHollow& hollow, double dx, const Vec3d& up,
         cells, dx, most);
   for (int a = 0; a < 3; ++a) out.count[a] = static_cast<int>(std::ceil(bounds.size()[a] / dx - 1e-9)) + 2 * margin;
   out.low = bounds.center() - static_cast<Vec3d>(out.count) * (0.5 * dx);
-
-  const double h = 0.5 * dx;
-  Box<float> share(out.count * 2);
-  const auto middle = [&](const Vec3i& c) { return out.low + (static_cast<Vec3d>(c) + Vec3d{0.5, 0.5, 0.5}) * h; };
-  const auto distance = [&](const Vec3d& p) {
-    double d = hollow.region->distance(p);
-    for (const auto& solid : blocking) d = std::max(d, -solid->distance(p));
-    return d;
-  };
-  const auto below_mouth = [&](const Vec3d& p) { return dot(hollow.mouth - p, hollow.normal); };
-  Marks inside(out.count * 2);
-  parallel_for(share.size(), 1024, [&](std::size_t i) {
-    const Vec3d p = middle(share.place(i));
-    share[i] = static_cast<float>(share_of(distance, p, h));
-    // Before the mouth the way is as wide as the mouth.
-    const double depth = below_mouth(p);
-    inside[i] = depth > 0 ? share[i] >= 0.5f : distance(p + hollow.normal * (depth - 0.01 * h)) < 0;
-  });
-  out.spill = dot(hollow.mouth, up);
-  const bool level = dot(hollow.normal, up) > 1 - 1e-9;
-  std::vector<std::uint8_t> starts(share.size());
-  for (std::size_t i = 0; i < share.size(); ++i) {
-    out.volume += share[i] * h * h * h;
-    const Vec3i c = share.place(i);
-    // Wholly before the mouth.
-    starts[i] = below_mouth(out.low + static_cast<Vec3d>(c) * h) < -2 * h;
-    const double depth = below_mouth(middle(c));
-    // The rim of a mouth that is not level is where it is lowest.
-    if (!level && inside[i] && depth > 0 && depth < h)
-      out.spill = std::min(out.spill, dot(middle(c) + hollow.normal * depth, up));
-  }
-  const Marks reached = spread(spread(swept(inside, starts), share, 0.5f), share, 0);
-
-  const std::size_t all = static_cast<std::size_t>(out.count.x) * static_cast<std::size_t>(out.count.y) *
-                          static_cast<std::size_t>(out.count.z);
-  out.capacity.resize(all), out.open.resize(all);
-  for (std::size_t i = 0; i < share.size(); ++i) {
-    if (!reached[i]) continue;
-    const Vec3i c = share.place(i);
-    const Vec3d p = middle(c);
-    const double over = dot(p, up) - out.spill;
-    const double part = over < -0.9 * h ? share[i] : std::min<double>(share[i], cell_fraction(over / h, up));
-    const std::size_t cell = out.index({c.x / 2, c.y / 2, c.z / 2});
-    out.capacity[cell] += static_cast<float>(part * h * h * h);
-    if (below_mouth(p) < h || over > -h) out.open[cell] = 1;
-  }
-  for (const float c : out.capacity) out.reachable += c;
   return out;
 }
 
-Fill fill_of(const HollowCells& hollow, std::span<const Vec3d> points, double volume) {
-  const double cell = hollow.dx * hollow.dx * hollow.dx;
-  Fill out;
+/// The half cells of a hollow's grid.
+class HalfCells {
+ public:
+  HalfCells(const PlacedHollow& hollow, const HollowCells& cells,
+            std::span<const std::shared_ptr<const Region>> blocking)
+      : hollow_(hollow),
+        blocking_(blocking),
+        low_(cells.low),
+        up_(cells.up),
+        h_(0.5 * cells.dx),
+        share_(cells.count * 2),
+        inside_(cells.count * 2) {
+    parallel_for(share_.size(), 1024, [&](std::size_t i) {
+      const Vec3d p = middle(share_.place(i));
+      share_[i] = static_cast<float>(share_of([this](const Vec3d& x) { return distance(x); }, p, h_));
+      // Before the mouth the way is as wide as the mouth.
+      const double depth = below_mouth(p);
+      inside_[i] = depth > 0 ? share_[i] >= 0.5f : distance(p + hollow_.normal * (depth - 0.01 * h_)) < 0;
+    });
+  }
+
+  /// m^3 of all of the hollow.
+  double volume() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < share_.size(); ++i) sum += share_[i] * h_ * h_ * h_;
+    return sum;
+  }
+  /// m along `up`: where the mouth is lowest.
+  double spill() const {
+    double level = dot(hollow_.mouth, up_);
+    if (dot(hollow_.normal, up_) > 1 - 1e-9) return level;
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      const Vec3d p = middle(share_.place(i));
+      const double depth = below_mouth(p);
+      if (inside_[i] && depth > 0 && depth < h_) level = std::min(level, dot(p + hollow_.normal * depth, up_));
+    }
+    return level;
+  }
+  /// Those that liquid comes to by the mouth.
+  Marks reached() const {
+    std::vector<std::uint8_t> starts(share_.size());  // wholly before the mouth
+    for (std::size_t i = 0; i < share_.size(); ++i)
+      starts[i] = below_mouth(low_ + static_cast<Vec3d>(share_.place(i)) * h_) < -2 * h_;
+    return spread(spread(swept(inside_, starts), share_, 0.5f), share_, 0);
+  }
+  /// Adds up what cells hold of half cells that are reached, below the spill level of `out`.
+  void add_capacity(const Marks& reached, HollowCells& out) const {
+    const std::size_t all = static_cast<std::size_t>(out.count.x) * static_cast<std::size_t>(out.count.y) *
+                            static_cast<std::size_t>(out.count.z);
+    out.capacity.resize(all), out.open.resize(all);
+    for (std::size_t i = 0; i < share_.size(); ++i) {
+      if (!reached[i]) continue;
+      const Vec3i c = share_.place(i);
+      const Vec3d p = middle(c);
+      const double over = dot(p, up_) - out.spill;
+      const double part = over < -0.9 * h_ ? share_[i] : std::min<double>(share_[i], cell_fraction(over / h_, up_));
+      const std::size_t cell = out.index({c.x / 2, c.y / 2, c.z / 2});
+      out.capacity[cell] += static_cast<float>(part * h_ * h_ * h_);
+      if (below_mouth(p) < h_ || over > -h_) out.open[cell] = 1;
+    }
+    for (const float c : out.capacity) out.reachable += c;
+  }
+
+ private:
+  Vec3d middle(const Vec3i& c) const { return low_ + (static_cast<Vec3d>(c) + Vec3d{0.5, 0.5, 0.5}) * h_; }
+  double distance(const Vec3d& p) const {
+    double d = hollow_.region->distance(p);
+    for (const auto& solid : blocking_) d = std::max(d, -solid->distance(p));
+    return d;
+  }
+  double below_mouth(const Vec3d& p) const { return dot(hollow_.mouth - p, hollow_.normal); }
+
+  const PlacedHollow& hollow_;
+  std::span<const std::shared_ptr<const Region>> blocking_;
+  Vec3d low_, up_;
+  double h_;          ///< m, side of a half cell
+  Box<float> share_;  ///< of each that is hollow
+  Marks inside_;      ///< where a ball may be
+};
+
+/// Adds what the particles of liquids fill of cells; of those outside to `leaked`.
+Box<float> liquid_in(const HollowCells& hollow, std::span<const Vec3d> points, double volume, double& leaked) {
   Box<float> liquid(hollow.count);
   for (const Vec3d& p : points) {
     if (dot(p, hollow.up) > hollow.spill) continue;
     if (hollow.region->distance(p) > 0.5 * hollow.dx) {
-      out.leaked += volume;
+      leaked += volume;
     } else if (const Vec3i c = cell_at(hollow, p); liquid.contains(c)) {
       liquid[liquid.index(c)] += static_cast<float>(volume);
     }
   }
+  return liquid;
+}
+
+/// Whether a cell is filled; one that a wall cuts goes by those around it too.
+bool is_filled(const HollowCells& hollow, const Box<float>& liquid, std::size_t cell) {
   constexpr double whole = 0.9;
-  Marks empty(hollow.count);
-  for (std::size_t i = 0; i < empty.size(); ++i) {
-    const double room = hollow.capacity[i];
-    if (room == 0) continue;
-    double has = liquid[i], holds = room;
-    if (room < whole * cell) {
-      const Vec3i c = empty.place(i);
-      has = holds = 0;
-      for (int k = 0; k < 27; ++k) {
-        const Vec3i n = c + Vec3i{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
-        if (!liquid.contains(n)) continue;
-        has += liquid[liquid.index(n)], holds += hollow.capacity[liquid.index(n)];
-      }
+  double has = liquid[cell], holds = hollow.capacity[cell];
+  if (holds < whole * (hollow.dx * hollow.dx * hollow.dx)) {
+    const Vec3i c = liquid.place(cell);
+    has = holds = 0;
+    for (int k = 0; k < 27; ++k) {
+      const Vec3i n = c + Vec3i{k % 3 - 1, k / 3 % 3 - 1, k / 9 - 1};
+      if (!liquid.contains(n)) continue;
+      has += liquid[liquid.index(n)], holds += hollow.capacity[liquid.index(n)];
     }
-    if (has >= 0.5 * holds)
-      out.filled += room;
-    else
-      empty[i] = 1;
   }
+  return has >= 0.5 * holds;
+}
+
+/// Sets of `empty` cells, joined by faces, that are closed in and not too small.
+std::vector<Pocket> pockets_of(const HollowCells& hollow, Marks empty) {
+  constexpr double least = 4;
+  std::vector<Pocket> pockets;
   for (std::size_t first = 0; first < empty.size(); ++first) {
     if (empty[first] != 1) continue;
     std::vector<std::size_t> set{first};
@@ -246,14 +279,40 @@ Fill fill_of(const HollowCells& hollow, std::span<const Vec3d> points, double vo
           set.push_back(empty.index(c + side));
         }
     }
-    constexpr double least = 4;
-    if (open || pocket.volume < least * cell) continue;
+    if (open || pocket.volume < least * (hollow.dx * hollow.dx * hollow.dx)) continue;
     pocket.at = pocket.at / pocket.volume;
-    out.pockets.push_back(pocket);
+    pockets.push_back(pocket);
   }
-  std::sort(out.pockets.begin(), out.pockets.end(), [](const Pocket& a, const Pocket& b) {
+  std::sort(pockets.begin(), pockets.end(), [](const Pocket& a, const Pocket& b) {
     return std::tie(b.volume, a.at.y, a.at.x, a.at.z) < std::tie(a.volume, b.at.y, b.at.x, b.at.z);
   });
+  return pockets;
+}
+
+}  // namespace
+
+HollowCells hollow_cells(const PlacedHollow& hollow, double dx, const Vec3d& up,
+                         std::span<const std::shared_ptr<const Region>> blocking) {
+  HollowCells out = grid_about(hollow, dx, up);
+  const HalfCells halves(hollow, out, blocking);
+  out.volume = halves.volume();
+  out.spill = halves.spill();
+  halves.add_capacity(halves.reached(), out);
+  return out;
+}
+
+Fill fill_of(const HollowCells& hollow, std::span<const Vec3d> points, double volume) {
+  Fill out;
+  const Box<float> liquid = liquid_in(hollow, points, volume, out.leaked);
+  Marks empty(hollow.count);
+  for (std::size_t i = 0; i < empty.size(); ++i) {
+    if (hollow.capacity[i] == 0) continue;
+    if (is_filled(hollow, liquid, i))
+      out.filled += hollow.capacity[i];
+    else
+      empty[i] = 1;
+  }
+  out.pockets = pockets_of(hollow, std::move(empty));
   return out;
 }
 

@@ -157,7 +157,98 @@ struct Renderer::Impl {
     }
     fail_input("picture: there is no look '{}'; there are: {}", batch.look, names);
   }
+
+  /// A picture that is drawn, on the device.
+  struct Work {
+    const Picture& picture;
+    const Camera& camera;
+    const Framebuffer& framebuffer;
+    std::span<BatchOnDevice> batches;
+    std::span<const MeshOnDevice> meshes;
+    FrameContext frame;
+    Box3f occluded{};  ///< what ambient occlusion is wanted for
+  };
+  Work upload(const Picture& picture, const Camera& camera, const Framebuffer& framebuffer);
+  void draw_shadows(const Work& work);
+  void draw_looks(Work& work, Stage stage);
+  void draw_opaque(Work& work);
+  void draw_occlusion(const Work& work);
+  void draw_liquids(Work& work);
 };
+
+Renderer::Impl::Work Renderer::Impl::upload(const Picture& picture, const Camera& camera,
+                                            const Framebuffer& framebuffer) {
+  const std::span<BatchOnDevice> batches = particles.upload(picture.particles);
+  for (std::size_t k = 0; k < batches.size(); ++k) {
+    const Look& look = look_of(*batches[k].batch);
+    batches[k].stage = look.stage() == Stage::solid && picture.particles[k].opacity < 1 ? Stage::blended : look.stage();
+    if (look.wants_order()) particles.order(camera, k);
+  }
+  const std::span<const MeshOnDevice> on_device = meshes.upload(picture.meshes);
+  return {picture, camera,    framebuffer,
+          batches, on_device, {&camera, &framebuffer, &sun.depth(), &sun.darkness(), &light_ball.texture(), &screen}};
+}
+
+void Renderer::Impl::draw_shadows(const Work& work) {
+  const SunFrame from_sun = sun_frame(work.picture, SunMap::texels);
+  const FrameBlock now =
+      frame_block(work.picture, work.camera, from_sun, work.framebuffer.width(), work.framebuffer.height());
+  block.fill(&now, sizeof now);
+  glBindBufferBase(GL_UNIFORM_BUFFER, 0, block.name());
+  set_state();
+  sun.draw(work.batches, work.meshes, screen);
+  if (std::memcmp(&now, &last, sizeof now) != 0) light_ball.draw(screen);
+  last = now;
+}
+
+void Renderer::Impl::draw_looks(Work& work, Stage stage) {
+  for (const auto& look : looks) {
+    const std::span<const BatchOnDevice> mine = batches_of(*look, stage, work.batches);
+    if (mine.empty()) continue;
+    look->draw(work.frame, mine);
+    if (look->wants_occlusion())
+      for (const BatchOnDevice& b : mine) work.occluded.add(b.bounds.min), work.occluded.add(b.bounds.max);
+  }
+}
+
+void Renderer::Impl::draw_opaque(Work& work) {
+  work.framebuffer.target().bind();
+  glEnable(GL_DEPTH_TEST);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  draw_looks(work, Stage::solid);
+  mesh_pass.draw(work.meshes, sun, true);
+  ground.draw(work.picture, sun, screen);
+  draw_looks(work, Stage::blended);
+}
+
+void Renderer::Impl::draw_occlusion(const Work& work) {
+  if (work.occluded.empty()) return;
+  const Vec3f size = work.picture.domain.size();
+  const float reach = 0.06f * std::max({size.x, size.y, size.z});
+  const Patch patch =
+      seen_patch(work.camera, work.occluded, reach, work.framebuffer.width(), work.framebuffer.height());
+  if (!patch.empty()) occlusion.apply(work.framebuffer, patch, reach, screen);
+}
+
+/// Liquids, with the glass and the edges of the box behind and before them.
+void Renderer::Impl::draw_liquids(Work& work) {
+  Box3f liquids;
+  for (const BatchOnDevice& b : work.batches)
+    if (b.stage == Stage::liquid && !b.bounds.empty()) liquids.add(b.bounds.min), liquids.add(b.bounds.max);
+  if (liquids.empty()) {
+    lines.draw_outline(work.picture, work.camera.eye, LinePass::Edges::all);
+    mesh_pass.draw(work.meshes, sun, false);
+    return;
+  }
+  part_glass(work.meshes, liquids, work.camera);
+  mesh_pass.draw(behind, sun, false);
+  for (const auto& look : looks)
+    if (!batches_of(*look, Stage::liquid, work.batches).empty()) look->keep_behind(work.frame);
+  lines.draw_outline(work.picture, work.camera.eye, LinePass::Edges::behind);
+  draw_looks(work, Stage::liquid);
+  mesh_pass.draw(before, sun, false);
+  lines.draw_outline(work.picture, work.camera.eye, LinePass::Edges::before);
+}
 
 Renderer::Renderer() {
   require_opengl_3_3();
@@ -172,70 +263,14 @@ std::vector<std::string_view> Renderer::look_names() const {
 }
 
 void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuffer& framebuffer) {
-  Impl& r = *impl_;
   check_errors("before a picture is drawn");
   check(picture, camera);
-  const std::span<BatchOnDevice> batches = r.particles.upload(picture.particles);
-  for (std::size_t k = 0; k < batches.size(); ++k) {
-    const Look& look = r.look_of(*batches[k].batch);
-    batches[k].stage = look.stage() == Stage::solid && picture.particles[k].opacity < 1 ? Stage::blended : look.stage();
-    if (look.wants_order()) r.particles.order(camera, k);
-  }
-  const std::span<const MeshOnDevice> meshes = r.meshes.upload(picture.meshes);
-  const SunFrame sun = sun_frame(picture, SunMap::texels);
-  const FrameBlock block = frame_block(picture, camera, sun, framebuffer.width(), framebuffer.height());
-  r.block.fill(&block, sizeof block);
-  glBindBufferBase(GL_UNIFORM_BUFFER, 0, r.block.name());
-  set_state();
-  r.sun.draw(batches, meshes, r.screen);
-  if (std::memcmp(&block, &r.last, sizeof block) != 0) r.light_ball.draw(r.screen);
-  r.last = block;
-
-  framebuffer.target().bind();
-  glEnable(GL_DEPTH_TEST);
-  glClear(GL_DEPTH_BUFFER_BIT);
-  const FrameContext frame{&camera,  &framebuffer, &r.sun.depth(), &r.sun.darkness(), &r.light_ball.texture(),
-                           &r.screen};
-  Box3f occluded;  // what ambient occlusion is wanted for
-  const auto draw_looks = [&](Stage stage) {
-    for (const auto& look : r.looks) {
-      const std::span<const BatchOnDevice> mine = r.batches_of(*look, stage, batches);
-      if (mine.empty()) continue;
-      look->draw(frame, mine);
-      if (look->wants_occlusion())
-        for (const BatchOnDevice& b : mine) {
-          occluded.add(b.bounds.min);
-          occluded.add(b.bounds.max);
-        }
-    }
-  };
-  draw_looks(Stage::solid);
-  r.mesh_pass.draw(meshes, r.sun, true);
-  r.ground.draw(picture, r.sun, r.screen);
-  draw_looks(Stage::blended);
-  if (!occluded.empty()) {
-    const Vec3f size = picture.domain.size();
-    const float reach = 0.06f * std::max({size.x, size.y, size.z});
-    const Patch patch = seen_patch(camera, occluded, reach, framebuffer.width(), framebuffer.height());
-    if (!patch.empty()) r.occlusion.apply(framebuffer, patch, reach, r.screen);
-  }
-  Box3f liquids;
-  for (const BatchOnDevice& b : batches)
-    if (b.stage == Stage::liquid && !b.bounds.empty()) liquids.add(b.bounds.min), liquids.add(b.bounds.max);
-  if (liquids.empty()) {
-    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::all);
-    r.mesh_pass.draw(meshes, r.sun, false);
-  } else {
-    r.part_glass(meshes, liquids, camera);
-    r.mesh_pass.draw(r.behind, r.sun, false);
-    for (const auto& look : r.looks)
-      if (!r.batches_of(*look, Stage::liquid, batches).empty()) look->keep_behind(frame);
-    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::behind);
-    draw_looks(Stage::liquid);
-    r.mesh_pass.draw(r.before, r.sun, false);
-    r.lines.draw_outline(picture, camera.eye, LinePass::Edges::before);
-  }
-  r.lines.draw_marks(picture);
+  Impl::Work work = impl_->upload(picture, camera, framebuffer);
+  impl_->draw_shadows(work);
+  impl_->draw_opaque(work);
+  impl_->draw_occlusion(work);
+  impl_->draw_liquids(work);
+  impl_->lines.draw_marks(picture);
 
   glDisable(GL_DEPTH_TEST);
   glUseProgram(0);

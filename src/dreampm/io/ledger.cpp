@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <type_traits>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -24,46 +25,40 @@ std::vector<std::string> split(std::string_view line) {
 
 std::string join(const std::vector<std::string>& words) { return fmt::format("{}\n", fmt::join(words, ",")); }
 
-// What may limit a step.
-const std::vector<std::string>& limiters() {
-  static const std::vector<std::string> names = {"speed", "wave", "viscosity", "frame", "user"};
+std::vector<std::string> names_of(const std::vector<LedgerCell>& cells) {
+  std::vector<std::string> names;
+  for (const LedgerCell& cell : cells) names.push_back(cell.name());
   return names;
 }
 
-void check_columns(const std::string& file, const std::vector<std::string>& columns) {
-  if (columns.empty() || columns.front() != "frame") fail_input("{}: the first column must be \"frame\"", file);
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i].empty() || columns[i].find_first_of(",\r\n\"") != std::string::npos)
-      fail_input("{}: \"{}\" cannot name a column", file, columns[i]);
-    if (std::find(columns.begin(), columns.begin() + static_cast<std::ptrdiff_t>(i), columns[i]) !=
-        columns.begin() + static_cast<std::ptrdiff_t>(i))
-      fail_input("{}: column {} is there twice", file, columns[i]);
-  }
+std::string cell_text(const LedgerRow& row, const LedgerCell& cell) {
+  return std::visit(
+      [&]<class M>(M LedgerRow::* member) -> std::string {
+        if constexpr (std::is_same_v<M, int>) return std::to_string(row.*member);
+        if constexpr (std::is_same_v<M, Limiter>) return std::string(name_of(row.*member));
+        if constexpr (std::is_same_v<M, double>) return exact_text(row.*member);
+        if constexpr (std::is_same_v<M, Vec3d>) return exact_text((row.*member)[cell.axis]);
+      },
+      cell.column->value);
 }
 
-std::string row_text(const std::string& file, const std::vector<std::string>& columns, const LedgerRow& row) {
-  std::vector<std::string> cells;
-  std::size_t used = 0;
-  for (const std::string& name : columns) {
-    if (name == "frame") {
-      cells.push_back(std::to_string(row.frame));
-    } else if (name == "limiter") {
-      if (std::find(limiters().begin(), limiters().end(), row.limiter) == limiters().end())
-        fail_input("{}: frame {}: limiter \"{}\" is not one of {}", file, row.frame, row.limiter,
-                   fmt::join(limiters(), ", "));
-      cells.push_back(row.limiter);
-    } else {
-      const auto value = row.values.find(name);
-      if (value == row.values.end()) fail_input("{}: frame {}: no value for column {}", file, row.frame, name);
-      cells.push_back(exact_text(value->second));
-      ++used;
-    }
+std::string row_text(const std::vector<LedgerCell>& cells, const LedgerRow& row) {
+  std::vector<std::string> words;
+  for (const LedgerCell& cell : cells) words.push_back(cell_text(row, cell));
+  return join(words);
+}
+
+/// The cells that the first line of a file names.
+std::vector<LedgerCell> cells_of(const std::string& file, const std::vector<std::string>& columns) {
+  if (columns.empty() || columns.front() != "frame") fail_input("{}: the first column must be \"frame\"", file);
+  std::vector<LedgerCell> cells;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const auto here = columns.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::find(columns.begin(), here, *here) != here) fail_input("{}: column {} is there twice", file, *here);
+    cells.push_back(find_ledger_cell(*here));
+    if (!cells.back().column) fail_input("{}: \"{}\" is no column of a ledger", file, *here);
   }
-  if (used != row.values.size())
-    for (const auto& [name, value] : row.values)
-      if (std::find(columns.begin(), columns.end(), name) == columns.end())
-        fail_input("{}: frame {}: the ledger has no column {}", file, row.frame, name);
-  return join(cells);
+  return cells;
 }
 
 template <class T>
@@ -75,100 +70,46 @@ T parse(const std::string& file, std::size_t line, const std::string& column, co
   return value;
 }
 
+constexpr Limiter all_limiters[] = {Limiter::speed, Limiter::wave, Limiter::viscosity, Limiter::frame, Limiter::user};
+
+Limiter parse_limiter(const std::string& file, std::size_t line, const std::string& text) {
+  for (const Limiter limiter : all_limiters)
+    if (name_of(limiter) == text) return limiter;
+  std::vector<std::string_view> names;
+  for (const Limiter limiter : all_limiters) names.push_back(name_of(limiter));
+  fail_input("{}:{}: limiter \"{}\" is not one of {}", file, line, text, fmt::join(names, ", "));
+}
+
+void parse_cell(const std::string& file, std::size_t line, const LedgerCell& cell, const std::string& text,
+                LedgerRow& row) {
+  std::visit(
+      [&]<class M>(M LedgerRow::* member) {
+        if constexpr (std::is_same_v<M, Limiter>)
+          row.*member = parse_limiter(file, line, text);
+        else if constexpr (std::is_same_v<M, Vec3d>)
+          (row.*member)[cell.axis] = parse<double>(file, line, cell.name(), text);
+        else
+          row.*member = parse<M>(file, line, cell.name(), text);
+      },
+      cell.column->value);
+}
+
 }  // namespace
-
-const std::vector<std::string>& ledger_columns() {
-  static const std::vector<std::string> names = {"frame",
-                                                 "time",
-                                                 "substeps",
-                                                 "dt_min",
-                                                 "dt_max",
-                                                 "limiter",
-                                                 "stages",
-                                                 "particles",
-                                                 "left",
-                                                 "mass",
-                                                 "left_mass",
-                                                 "grid_mass",
-                                                 "momentum_x",
-                                                 "momentum_y",
-                                                 "momentum_z",
-                                                 "angular_x",
-                                                 "angular_y",
-                                                 "angular_z",
-                                                 "kinetic",
-                                                 "elastic",
-                                                 "gravity",
-                                                 "work",
-                                                 "power",
-                                                 "dissipated",
-                                                 "dissipated_viscosity",
-                                                 "dissipated_plasticity",
-                                                 "dissipated_relaxation",
-                                                 "dissipated_friction",
-                                                 "dissipated_transfer",
-                                                 "dissipated_damping",
-                                                 "dissipated_rest",
-                                                 "wall_impulse_x",
-                                                 "wall_impulse_y",
-                                                 "wall_impulse_z",
-                                                 "wall_angular_x",
-                                                 "wall_angular_y",
-                                                 "wall_angular_z",
-                                                 "body_impulse_x",
-                                                 "body_impulse_y",
-                                                 "body_impulse_z",
-                                                 "body_angular_x",
-                                                 "body_angular_y",
-                                                 "body_angular_z",
-                                                 "left_momentum_x",
-                                                 "left_momentum_y",
-                                                 "left_momentum_z",
-                                                 "left_angular_x",
-                                                 "left_angular_y",
-                                                 "left_angular_z",
-                                                 "momentum_bound",
-                                                 "angular_bound",
-                                                 "energy_bound",
-                                                 "volume",
-                                                 "j_min",
-                                                 "j_max",
-                                                 "swollen"};
-  return names;
-}
-
-const std::vector<std::string>& inflow_columns() {
-  static const std::vector<std::string> names = {"entered",
-                                                 "entered_mass",
-                                                 "entered_energy",
-                                                 "entered_momentum_x",
-                                                 "entered_momentum_y",
-                                                 "entered_momentum_z",
-                                                 "entered_angular_x",
-                                                 "entered_angular_y",
-                                                 "entered_angular_z"};
-  return names;
-}
-
-const std::vector<std::string>& projection_columns() {
-  static const std::vector<std::string> names = {"dissipated_projection"};
-  return names;
-}
 
 std::string exact_text(double value) { return std::isnan(value) ? "nan" : fmt::format("{}", value); }
 
-LedgerWriter::LedgerWriter(fs::path file, std::vector<std::string> columns, int keep_until)
-    : file_(std::move(file)), columns_(std::move(columns)) {
-  check_columns(file_.string(), columns_);
-  std::string text = join(columns_);
+LedgerWriter::LedgerWriter(fs::path file, const LedgerKind& kind, int keep_until)
+    : file_(std::move(file)), cells_(ledger_cells(kind)) {
+  const std::vector<std::string> columns = names_of(cells_);
+  std::string text = join(columns);
   if (keep_until > 0) {
     const Ledger old = read_ledger(file_);
-    if (old.columns != columns_)
+    if (old.columns != columns)
       fail_input("{}: its columns are {}; this run writes {}", file_.string(), fmt::join(old.columns, ","),
-                 fmt::join(columns_, ","));
+                 fmt::join(columns, ","));
     for (const LedgerRow& row : old.rows)
       if (row.frame <= keep_until) {
-        text += row_text(file_.string(), columns_, row);
+        text += row_text(cells_, row);
         last_frame_ = row.frame;
       }
   }
@@ -176,16 +117,16 @@ LedgerWriter::LedgerWriter(fs::path file, std::vector<std::string> columns, int 
 }
 
 void LedgerWriter::append(const LedgerRow& row) {
-  const std::string name = file_.string();
-  if (row.frame <= last_frame_) fail_input("{}: frame {} cannot follow frame {}", name, row.frame, last_frame_);
-  const std::string text = row_text(name, columns_, row);
-  append_text(file_, text);
+  if (row.frame <= last_frame_)
+    fail_input("{}: frame {} cannot follow frame {}", file_.string(), row.frame, last_frame_);
+  append_text(file_, row_text(cells_, row));
   last_frame_ = row.frame;
 }
 
 Ledger read_ledger(const fs::path& file) {
   const std::string name = file.string(), text = read_file(file);
   Ledger out;
+  std::vector<LedgerCell> columns;
   std::size_t number = 0;
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t end = text.find('\n', at);
@@ -197,20 +138,13 @@ Ledger read_ledger(const fs::path& file) {
     const std::vector<std::string> cells = split(line);
     if (number == 1) {
       out.columns = cells;
-      check_columns(name, out.columns);
+      columns = cells_of(name, out.columns);
       continue;
     }
     if (cells.size() != out.columns.size())
       fail_input("{}:{}: {} values, but there are {} columns", name, number, cells.size(), out.columns.size());
     LedgerRow row;
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      if (out.columns[i] == "frame")
-        row.frame = parse<int>(name, number, "frame", cells[i]);
-      else if (out.columns[i] == "limiter")
-        row.limiter = cells[i];
-      else
-        row.values[out.columns[i]] = parse<double>(name, number, out.columns[i], cells[i]);
-    }
+    for (std::size_t i = 0; i < cells.size(); ++i) parse_cell(name, number, columns[i], cells[i], row);
     if (!out.rows.empty() && row.frame <= out.rows.back().frame)
       fail_input("{}:{}: frame {} follows frame {}", name, number, row.frame, out.rows.back().frame);
     out.rows.push_back(std::move(row));

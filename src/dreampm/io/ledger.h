@@ -1,46 +1,31 @@
 // ledger.csv: one row a frame of what is conserved, lost or received.
 #pragma once
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
+#include "dreampm/io/ledger_columns.h"
+
 namespace dreampm {
-
-/// One row. `values` holds a number for every column except frame and limiter.
-struct LedgerRow {
-  int frame = 1;
-  std::string limiter = "frame";  ///< speed | wave | viscosity | frame | user
-  std::map<std::string, double> values;
-};
-
-/// Every column of the format, in its order. A quantity that is not computed gets no column.
-const std::vector<std::string>& ledger_columns();
-/// The columns that stand after them in runs with emitters.
-const std::vector<std::string>& inflow_columns();
-/// Those that stand at the end in runs by a projection.
-const std::vector<std::string>& projection_columns();
 
 /// Writes rows as they come; each row is in the file when append returns.
 class LedgerWriter {
  public:
-  /// `columns`: "frame" first, then those that are computed. With `keep_until` 0 starts a new file;
-  /// otherwise keeps the rows of an existing file up to that frame (a resumed run), whose columns
-  /// must be the same. Throws InputError if the file is damaged or has other columns, RunError if
-  /// it cannot be written.
-  LedgerWriter(std::filesystem::path file, std::vector<std::string> columns, int keep_until = 0);
-  /// Throws InputError if the row lacks a column, has one too many, or does not follow the row
-  /// before it.
+  /// With `keep_until` 0 starts a new file; otherwise keeps the rows of an existing file up to that
+  /// frame (a resumed run), whose columns must be those of the kind. Throws InputError if the file
+  /// is damaged or has other columns, RunError if it cannot be written.
+  LedgerWriter(std::filesystem::path file, const LedgerKind& kind, int keep_until = 0);
+  /// Throws InputError if the row does not follow the row before it.
   void append(const LedgerRow& row);
 
  private:
   std::filesystem::path file_;
-  std::vector<std::string> columns_;
+  std::vector<LedgerCell> cells_;
   int last_frame_ = 0;
 };
 
 struct Ledger {
-  std::vector<std::string> columns;
+  std::vector<std::string> columns;  ///< of the file; a row's member without one is as LedgerRow has it
   std::vector<LedgerRow> rows;
 };
 

@@ -4,34 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "dreampm/simulation/probe_set.h"
-#include "dreampm/solver/step.h"
+#include "dreampm/run/frame_sums.h"
+#include "dreampm/run/probe_set.h"
 
 namespace dreampm {
-
-/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a
-/// frame.
-struct FrameSums {
-  std::uint64_t substeps = 0;
-  double dt_min = 1e30, dt_max = 0;
-  Limiter limiter = Limiter::frame;
-  int stages = 0;        ///< of viscosity, the most of a step
-  ImpulseSum contact;    ///< what matter received from walls and colliders
-  ImpulseSum body;       ///< and from gravity, damping and fields
-  ImpulseSum left;       ///< what left took along
-  Entered entered;       ///< what emitters gave
-  double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
-  double transfer = 0;   ///< J, of StepSums
-  double damping = 0;    ///< J that damping took
-  double rounding = 0;   ///< N s, of StepSums
-  double jumps = 0;      ///< N m s by which pushing particles back inside may have changed the angular momentum
-  double grid_mass = 0;  ///< kg on the nodes, at the last step
-  std::optional<double> swollen;    ///< m^3, of StepSums, at the last step that had it
-  std::optional<double> projected;  ///< J, of StepSums
-  /// `heaviest`: mass of the heaviest particle [kg].
-  void add(const StepSums& step, double heaviest);
-};
 
 struct CheckpointInfo {
   std::string scene_hash, backend, isa;

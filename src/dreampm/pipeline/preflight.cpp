@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
@@ -16,12 +18,10 @@
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
-#include "dreampm/run/engine.h"
-#include "dreampm/setup/assemble.h"
+#include "dreampm/run/scene_engine.h"
 #include "dreampm/setup/fixed_dt.h"
 #include "dreampm/setup/inflow.h"
 #include "dreampm/setup/start.h"
-#include "dreampm/simulation/probe_set.h"
 #include "dreampm/solver/projection/solids.h"
 
 namespace dreampm {
@@ -71,25 +71,24 @@ StepBound bound_of_expected(const InitialState& start, const model::Scene& scene
 Preflight preflight(const model::Scene& scene, const std::string& file) {
   std::string errors;
   fs::path disk;
-  InitialState start;
+  std::unique_ptr<SceneEngine<float>> begun;
   try {
     disk = existing_folder(scene.output.folder, file);
   } catch (const InputError& e) {
     errors = e.what();
   }
   try {
-    start = assemble(scene, file);
-    ProbeSet<float>(scene, start, file);
+    begun = std::make_unique<SceneEngine<float>>(scene, file, make_cpu_backend());
   } catch (const InputError& e) {
     errors += (errors.empty() ? "" : "\n") + std::string(e.what());
   }
   for (const std::string& e : refused_later(scene))
     errors += fmt::format("{}{}: error: {}", errors.empty() ? "" : "\n", file, e);
   if (!errors.empty()) throw InputError(errors);
-  Engine<float> engine(as_world<float>(start.world), make_cpu_backend());
-  const World<float>& world = engine.world();
-  begin(engine, start, scene);
-  check_fixed_dt(world, start.seeds, scene, file);
+  Engine<float>& engine = begun->engine();
+  InitialState& start = begun->start();
+  const World<float>& world = std::as_const(engine).world();
+  begun->begin();
   Preflight p;
   p.particles = start.particles();
   p.dx = world.dx;

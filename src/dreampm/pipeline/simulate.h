@@ -9,14 +9,9 @@
 
 #include "dreampm/model/scene.h"
 #include "dreampm/pipeline/run_lock.h"
+#include "dreampm/pipeline/run_record_file.h"
 
 namespace dreampm {
-
-/// Where a scene came from, for messages and run.json.
-struct SceneSource {
-  std::string path;
-  std::optional<std::string> variant;
-};
 
 struct SimulateOptions {
   std::filesystem::path folder;  ///< of the run

@@ -7,6 +7,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/io/ledger.h"
+#include "dreampm/run/ledger_observer.h"
 
 namespace dreampm {
 
@@ -21,5 +22,20 @@ class LedgerBreach : public RunError {
 /// row's own momentum_bound and angular_bound. Energy: what no column accounts for, with what
 /// transfers took of it at once, may be a loss, but a gain only to the row's energy_bound.
 std::optional<std::string> ledger_breach(const LedgerRow& before, const LedgerRow& now);
+
+/// Throws LedgerBreach at the end of a frame whose row does not close.
+template <class R>
+class StrictObserver final : public Observer {
+ public:
+  /// `ledger`: of the same engine, added to it before.
+  explicit StrictObserver(const LedgerObserver<R>& ledger) : ledger_(ledger) {}
+  void on_frame() override {
+    if (!ledger_.before()) return;
+    if (const auto breach = ledger_breach(*ledger_.before(), ledger_.row())) throw LedgerBreach(*breach);
+  }
+
+ private:
+  const LedgerObserver<R>& ledger_;
+};
 
 }  // namespace dreampm

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/bench.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/error.h"
-#include "dreampm/pipeline/bench.h"
 #include "dreampm/play/playground.h"
 
 namespace dreampm::play {

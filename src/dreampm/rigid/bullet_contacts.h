@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "dreampm/solver/rigid_motion.h"
+#include "dreampm/rigid/rigid_motion.h"
 
 namespace dreampm {
 

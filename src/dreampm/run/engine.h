@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "dreampm/base/error.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/rigid/bullet_contacts.h"
 #include "dreampm/solver/emit.h"
@@ -21,7 +22,6 @@ inline constexpr double always = -std::numeric_limits<double>::infinity(),
                         never = std::numeric_limits<double>::infinity();
 
 /// Watches an engine. What a method throws leaves the engine's call after the step is whole.
-template <class R>
 class Observer {
  public:
   virtual ~Observer() = default;
@@ -91,20 +91,20 @@ class Engine {
   void form_grid() { solver_->form_grid(world_, motion_); }
 
   /// `observer` must outlive the engine's calls. Called in the order in which they were added.
-  void add(Observer<R>& observer) { observers_.push_back(&observer); }
+  void add(Observer& observer) { observers_.push_back(&observer); }
 
   /// One step, and its observers. Velocities are wanted of it if it ends a frame, or at
   /// `sample_time` [s] or later.
   StepSums step(double sample_time = never) {
-    for (const Observer<R>* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
+    for (const Observer* o : observers_) sample_time = std::min(sample_time, o->next_sample_time());
     current_ = false;
     const Entered entered = world_.emitters.empty() ? Entered{} : emit(world_, *backend_, *solver_, motion_);
     StepSums sums = solver_->step(world_, motion_, sample_time, contacts_.get());
     sums.entered = entered;
     current_ = sums.frame_done || world_.time >= sample_time;
-    for (Observer<R>* o : observers_) o->on_step(sums);
+    for (Observer* o : observers_) o->on_step(sums);
     if (sums.frame_done)
-      for (Observer<R>* o : observers_) o->on_frame();
+      for (Observer* o : observers_) o->on_frame();
     return sums;
   }
   /// Steps until done(); the sums of the last step. `capture(world)`: whether velocities are wanted
@@ -127,7 +127,7 @@ class Engine {
   std::unique_ptr<BodyContacts> contacts_;  ///< null without rigid bodies
   Motion<R> motion_;
   bool current_ = false;
-  std::vector<Observer<R>*> observers_;
+  std::vector<Observer*> observers_;
 };
 
 }  // namespace dreampm

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
-#include "dreampm/setup/place.h"
 #include "dreampm/solver/step.h"
 
 namespace dreampm {
@@ -20,9 +19,8 @@ std::string too_many_stages(const World<R>& world) {
 }
 
 template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds,
-                    const model::Scene& scene, const std::string& file) {
-  const model::Time& time = scene.time;
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const model::Time& time,
+                    const std::string& at) {
   if (!time.dt || time.solver == SolverKind::projection) return;
   const double longest = longest_fixed_dt(world, seeds);
   if (std::min(*time.dt, world.dt_next) <= longest) return;
@@ -31,14 +29,14 @@ void check_fixed_dt(const World<R>& world, const std::vector<std::vector<Particl
   fail_input(
       "{}: error: time.dt is {}: must be at most {:.3g} s, for sound and matter may cross {} of a cell in a step; or "
       "give time.cfl instead",
-      place(file, scene, "time.dt"), *time.dt, digit * std::floor(longest / digit), largest_cfl);
+      at, *time.dt, digit * std::floor(longest / digit), largest_cfl);
 }
 
 template std::string too_many_stages(const World<float>&);
-template void check_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&, const model::Scene&,
+template void check_fixed_dt(const World<float>&, const std::vector<std::vector<ParticleSeed>>&, const model::Time&,
                              const std::string&);
 template std::string too_many_stages(const World<double>&);
-template void check_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&, const model::Scene&,
+template void check_fixed_dt(const World<double>&, const std::vector<std::vector<ParticleSeed>>&, const model::Time&,
                              const std::string&);
 
 }  // namespace dreampm

@@ -13,10 +13,11 @@ namespace dreampm {
 template <class R>
 std::string too_many_stages(const World<R>& world);
 
-/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `file` names the scene.
+/// Refuses a time.dt that cannot work. Call after `begin`, with its seeds. `at`: the place of
+/// the key, for the message.
 /// Throws InputError.
 template <class R>
-void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds,
-                    const model::Scene& scene, const std::string& file);
+void check_fixed_dt(const World<R>& world, const std::vector<std::vector<ParticleSeed>>& seeds, const model::Time& time,
+                    const std::string& at);
 
 }  // namespace dreampm

@@ -118,28 +118,23 @@ void write_start(const fs::path& file, const World<R>& world, const Motion<R>& m
 }
 
 template <class R>
-void begin(Engine<R>& engine, const InitialState& start, const model::Scene& scene) {
-  if (scene.start.empty()) return engine.begin(start.seeds);
-  const std::string& file = scene.start;
+bool read_start(const fs::path& file, int frames, World<R>& world, Motion<R>& motion) {
   const ArchiveReader a(file, start_format, start_version);
-  World<R> world = engine.world();
-  check_fits(a, world, file);
+  check_fits(a, world, file.string());
   const double cfl = world.settings.cfl;
   read_world(a, world);
   world.settings.cfl = cfl;
-  if (world.frame > scene.time.frames)
-    fail_input("start: {} is at frame {}, t = {:.6g} s, and time.frames is {}: frames count from t = 0", file,
-               world.frame, world.time, scene.time.frames);
-  Motion<R> motion;
+  if (world.frame > frames)
+    fail_input("start: {} is at frame {}, t = {:.6g} s, and time.frames is {}: frames count from t = 0", file.string(),
+               world.frame, world.time, frames);
+  motion.sets.clear();
   for (const ParticleSet<R>& set : world.sets) motion.sets.push_back(read_motion<R>(a, set.name, set.size()));
-  const bool same = state_hash(world) == a.value<std::uint64_t>("hash");
-  engine.replace(std::move(world), &motion);
-  if (!same) engine.form_grid();
+  return state_hash(world) == a.value<std::uint64_t>("hash");
 }
 
 template void write_start(const fs::path&, const World<float>&, const Motion<float>&, const ExpectedSpeed&);
 template void write_start(const fs::path&, const World<double>&, const Motion<double>&, const ExpectedSpeed&);
-template void begin(Engine<float>&, const InitialState&, const model::Scene&);
-template void begin(Engine<double>&, const InitialState&, const model::Scene&);
+template bool read_start(const fs::path&, int, World<float>&, Motion<float>&);
+template bool read_start(const fs::path&, int, World<double>&, Motion<double>&);
 
 }  // namespace dreampm

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "dreampm/run/engine.h"
+#include "dreampm/backend/motion.h"
 #include "dreampm/setup/assemble.h"
 
 namespace dreampm {
@@ -36,11 +36,11 @@ template <class R>
 void write_start(const std::filesystem::path& file, const World<R>& world, const Motion<R>& motion,
                  const ExpectedSpeed& expected);
 
-/// Brings the first matter into an engine of the empty world of `start`: that of the bodies, or
-/// that of the scene's start. Where the scene is as it was when the start was written, the future
-/// is the same to the bit; else the grid is formed anew, of the same particles. Throws InputError
-/// for a start of another spacing, space or precision, or without one of the scene's materials.
+/// Reads what `write_start` wrote into the empty `world` of a scene of `frames` frames, and its
+/// motion. Whether the world is as it was then, to the bit; else its grid must be formed anew.
+/// Throws InputError for a start of another spacing, space or precision, or without one of the
+/// materials.
 template <class R>
-void begin(Engine<R>& engine, const InitialState& start, const model::Scene& scene);
+bool read_start(const std::filesystem::path& file, int frames, World<R>& world, Motion<R>& motion);
 
 }  // namespace dreampm

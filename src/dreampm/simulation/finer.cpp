@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dreampm/backend/registry.h"
+#include "dreampm/run/engine.h"
 #include "dreampm/setup/start.h"
 #include "dreampm/solver/motion_by_id.h"
 #include "dreampm/state/particle_state.h"

@@ -16,16 +16,16 @@
 
 namespace dreampm {
 
-void Simulation::save(const std::filesystem::path& file) const {
+void Simulation::Impl::save(const std::filesystem::path& file) const {
   if (file.extension() != ".yaml") fail_input("save: {} must end in .yaml", file.string());
-  model::Scene now = scene().model();
+  model::Scene now = state.scene.model();
   now.name = file.stem().string();
   if (!scene::good_name(now.name))
     fail_input("save: {}: the scene's name, '{}', must be {}", file.string(), now.name, scene::good_name_rule);
   now.output.folder = "out/" + now.name;
   now.bodies.clear();
   now.start.clear();
-  now.time.frames = std::max(now.time.frames, frame());
+  now.time.frames = std::max(now.time.frames, with_engine([](auto& engine) { return engine.world().frame; }));
   scene::each_model(now, [](std::string& path) {
     if (!is_asset(path)) path = std::filesystem::absolute(path).string();
   });
@@ -33,7 +33,7 @@ void Simulation::save(const std::filesystem::path& file) const {
   check_replaceable(file);
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
-  impl_->with_engine([&](auto& engine) {
+  with_engine([&](auto& engine) {
     const auto& world = engine.world();
     for (std::size_t f = now.fields.size(); f < world.fields.size(); ++f) {
       const std::string& name = world.fields[f].name;
@@ -53,13 +53,16 @@ void Simulation::save(const std::filesystem::path& file) const {
   replace_file_text(file, scene::emit_scene(now));
 }
 
-void Simulation::save_moment(const std::filesystem::path& file) const {
-  impl_->settle();
-  impl_->with_engine([&](auto& engine) {
+void Simulation::Impl::save_moment(const std::filesystem::path& file) const {
+  settle();
+  with_engine([&](auto& engine) {
     engine.download(MatterFields::all);
-    write_start(file, engine.world(), engine.motion(), impl_->state.expected);
+    write_start(file, engine.world(), engine.motion(), state.expected);
   });
 }
+
+void Simulation::save(const std::filesystem::path& file) const { impl_->save(file); }
+void Simulation::save_moment(const std::filesystem::path& file) const { impl_->save_moment(file); }
 
 void Simulation::save_moment(const std::filesystem::path& file, const Scene& finer) const {
   const model::Scene &own = scene().model(), &other = finer.model();
@@ -80,6 +83,7 @@ void Simulation::load(const std::filesystem::path& file) {
   if (impl_->under_way > 0)
     fail_input("load: {} cannot be loaded while steps are under way: not inside of an observer", file.string());
   auto next = std::make_unique<Impl>(load_scene(file), impl_->options);
+  next->take_attached(*impl_);
   next->step_observers = std::move(impl_->step_observers);
   next->frame_observers = std::move(impl_->frame_observers);
   impl_ = std::move(next);

@@ -14,8 +14,6 @@
 #include "dreampm/pictures/draw.h"
 #include "dreampm/pictures/frames.h"
 #include "dreampm/scene/emit.h"
-#include "dreampm/setup/fixed_dt.h"
-#include "dreampm/setup/start.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/choose_dt.h"
 #include "dreampm/state/particle_view.h"
@@ -23,19 +21,11 @@
 
 namespace dreampm {
 
-/// Hands what the engine reports to the probes, then to the functions of a program.
+/// Hands what the engine reports to what is attached, then to the functions of a program.
 template <class R>
-struct Simulation::Impl::Relay final : Observer<R> {
-  Relay(Simulation::Impl& owner, Engine<R>& of, ProbeSet<R> set)
-      : simulation(owner), engine(of), probes(std::move(set)) {}
-  double next_sample_time() const override { return simulation.step_observers.empty() ? probes.next() : always; }
-  void sample_probes(bool frame_done) {
-    const double time = engine.world().time;
-    engine.download(probes.fields_due(time, frame_done));
-    probes.sample(engine.world(), engine.motion(), frame_done, [&](std::size_t p, const std::vector<double>& row) {
-      simulation.state.probes[p].time.push_back(time), simulation.state.probes[p].rows.push_back(row);
-    });
-  }
+struct Simulation::Impl::Relay final : Observer {
+  Relay(Simulation::Impl& owner, Engine<R>& of) : simulation(owner), engine(of) {}
+  double next_sample_time() const override { return simulation.step_observers.empty() ? never : always; }
   void on_step(const StepSums& sums) override {
     simulation.forget_views();
     ++simulation.state.frame_steps;
@@ -43,9 +33,7 @@ struct Simulation::Impl::Relay final : Observer<R> {
     received.impulse.resize(sums.grid.colliders.size());
     for (std::size_t c = 0; c < received.impulse.size(); ++c) received.impulse[c] += sums.grid.colliders[c].impulse;
     received.seconds += sums.dt;
-    const double due = probes.next();
-    probes.accumulate(sums);
-    if (sums.frame_done || engine.world().time >= due) sample_probes(sums.frame_done);
+    for (const AttachedFiles& files : simulation.attached) files.observer->on_step(sums);
     if (simulation.step_observers.empty()) return;
     const StepReport report = simulation.report(sums);
     // An observer may add another one.
@@ -54,11 +42,11 @@ struct Simulation::Impl::Relay final : Observer<R> {
   void on_frame() override {
     const World<R>& world = engine.world();
     const FrameEvent event{world.frame, world.time, std::exchange(simulation.state.frame_steps, 0)};
+    for (const AttachedFiles& files : simulation.attached) files.observer->on_frame();
     for (std::size_t i = 0; i < simulation.frame_observers.size(); ++i) simulation.frame_observers[i](event);
   }
   Simulation::Impl& simulation;
   Engine<R>& engine;
-  ProbeSet<R> probes;
 };
 
 Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& given)
@@ -68,35 +56,35 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& given)
       threads_(std::make_unique<ThreadArena>(options.threads)) {
   threads_->run([&] {
     const HostScope scope(host_);
-    InitialState start = assemble(scene.model(), scene.file());
+    const model::Scene& description = scene.model();
+    InitialState start = assemble(description, scene.file());
     for (const std::string& w : start.warnings) warn("{}", w);
     for (const std::string& n : start.notes) info("{}", n);
     const auto make = [&]<class R>(std::unique_ptr<Backend<R>> backend) {
-      auto engine = std::make_unique<Engine<R>>(as_world<R>(start.world), std::move(backend));
-      ProbeSet<R> probes(scene.model(), start, scene.file());
+      auto made = std::make_unique<SceneEngine<R>>(description, scene.file(), std::move(start), std::move(backend));
+      Engine<R>& engine = made->engine();
+      const ProbeSet<R>& probes = made->probes().set();
       for (std::size_t p = 0; p < probes.size(); ++p) state.probes.push_back({probes.columns(p), {}, {}});
-      auto relay = std::make_shared<Relay<R>>(*this, *engine, std::move(probes));
-      engine->add(*relay);
-      begin(*engine, start, scene.model());
-      check_fixed_dt(engine->world(), start.seeds, scene.model(), scene.file());
-      identity = fmt::format("{} {} {}", scene::scene_hash(scene.model(), scene::Part::simulation),
-                             engine->backend().name(), engine->backend().isa());
-      for (const model::Probe& p : scene.model().probes)
-        identity += fmt::format(" {}", scene::probe_hash(scene.model(), p));
-      relay->sample_probes(true);
-      engine_ = std::move(engine);
-      relay_ = std::shared_ptr<Observer<R>>(std::move(relay));
+      made->probes().add([this](std::size_t p, double time, const std::vector<double>& row) {
+        state.probes[p].time.push_back(time), state.probes[p].rows.push_back(row);
+        for (const AttachedFiles& files : attached) files.observer->on_probe_row(p, time, row);
+      });
+      relay_ = std::make_unique<Relay<R>>(*this, engine);
+      engine.add(*relay_);
+      made->begin();
+      identity = fmt::format("{} {} {}", scene::scene_hash(description, scene::Part::simulation),
+                             engine.backend().name(), engine.backend().isa());
+      for (const model::Probe& p : description.probes)
+        identity += fmt::format(" {}", scene::probe_hash(description, p));
+      made->probes().sample(true);
+      state.bodies = std::move(made->start().bodies);
+      state.expected = std::move(made->start().expected);
+      made->start() = {};
+      scene_ = std::move(made);
     };
     std::visit(make, make_backend(options.backend, options.isa));
-    state.bodies = std::move(start.bodies);
-    state.expected = std::move(start.expected);
     state.next_id = first_free_id();
   });
-}
-
-template <class R>
-Simulation::Impl::Relay<R>& Simulation::Impl::relay() const {
-  return static_cast<Relay<R>&>(*std::get<std::shared_ptr<Observer<R>>>(relay_));
 }
 
 std::uint32_t Simulation::Impl::first_free_id() const {
@@ -315,7 +303,7 @@ Snapshot Simulation::snapshot() const {
     engine.download(MatterFields::all);
     s.data_ = std::make_shared<const Snapshot::Data>(Snapshot::Data{
         impl_->state, impl_->identity, engine.world(), carries_motion(engine.world()) ? Motion<R>{} : engine.motion(),
-        impl_->relay<R>().probes.memories()});
+        impl_->probe_set<R>().memories()});
   });
   return s;
 }
@@ -332,11 +320,12 @@ void Simulation::restore(const Snapshot& snapshot) {
     } else {
       engine.replace(World<R>(world), &std::get<Motion<R>>(snapshot.data_->motion));
     }
-    impl_->relay<R>().probes.resume(snapshot.data_->probes, engine.world().time);
+    impl_->probe_set<R>().resume(snapshot.data_->probes, engine.world().time);
   });
   impl_->state = snapshot.data_->state;
   impl_->received = {};
   impl_->forget_views();
+  impl_->reopen_attached();
 }
 
 double Snapshot::time() const {

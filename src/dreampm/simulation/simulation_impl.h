@@ -1,5 +1,7 @@
 // What a Simulation is made of. For the files of this module alone.
 #pragma once
+#include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -12,10 +14,9 @@
 #include "dreampm/base/host.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/ply.h"
-#include "dreampm/run/engine.h"
+#include "dreampm/run/scene_engine.h"
 #include "dreampm/setup/assemble.h"
 #include "dreampm/simulation.h"
-#include "dreampm/simulation/probe_set.h"
 
 namespace dreampm {
 
@@ -51,6 +52,13 @@ struct Snapshot::Data {
 /// Says which names there are instead.
 [[noreturn]] void fail_unknown(std::string_view kind, std::string_view name, const std::vector<std::string>& names);
 
+/// Writes files of a simulation.
+class AttachedObserver : public Observer {
+ public:
+  /// A row of a probe of the scene, by its number.
+  virtual void on_probe_row(std::size_t, double /*time*/, const std::vector<double>& /*row*/) {}
+};
+
 struct Simulation::Impl {
   Impl(const Scene& scene, const SimulationOptions& given);
 
@@ -62,7 +70,7 @@ struct Simulation::Impl {
     const auto run = [&](const auto& body) {
       threads_->run([&] {
         const HostScope scope(host_);
-        std::visit([&](const auto& engine) { body(*engine); }, engine_);
+        std::visit([&](const auto& scene) { body(scene->engine()); }, scene_);
       });
     };
     if constexpr (std::is_void_v<Result>) {
@@ -125,11 +133,30 @@ struct Simulation::Impl {
   };
   Received received;
 
-  /// Hands on what the engine of that precision reports; it has the probes.
+  /// Hands on what the engine reports.
   template <class R>
   struct Relay;
   template <class R>
-  Relay<R>& relay() const;
+  ProbeSet<R>& probe_set() const {
+    return std::get<std::unique_ptr<SceneEngine<R>>>(scene_)->probes().set();
+  }
+
+  /// As Simulation::save.
+  void save(const std::filesystem::path& file) const;
+  void save_moment(const std::filesystem::path& file) const;
+
+  /// Makes an observer at the moment at hand; `goes_on`: its files are there, up to a later moment.
+  using OpenObserver = std::function<std::unique_ptr<AttachedObserver>(Impl&, bool goes_on)>;
+  struct AttachedFiles {
+    OpenObserver open;
+    std::unique_ptr<AttachedObserver> observer;
+  };
+  std::vector<AttachedFiles> attached;
+  void attach(OpenObserver open);
+  /// After the world was replaced by that of another moment.
+  void reopen_attached();
+  /// Goes on with the files of another simulation.
+  void take_attached(const Impl& from);
 
   SimulationOptions options;
   mutable SimulationState state;
@@ -160,8 +187,8 @@ struct Simulation::Impl {
  private:
   Host* host_;
   std::unique_ptr<ThreadArena> threads_;
-  std::variant<std::unique_ptr<Engine<float>>, std::unique_ptr<Engine<double>>> engine_;
-  std::variant<std::monostate, std::shared_ptr<Observer<float>>, std::shared_ptr<Observer<double>>> relay_;
+  std::variant<std::unique_ptr<SceneEngine<float>>, std::unique_ptr<SceneEngine<double>>> scene_;
+  std::unique_ptr<Observer> relay_;
 };
 
 /// The way of this module's files, and of tests, to what a Simulation is made of.

@@ -5,7 +5,7 @@
 
 #include "dreampm/backend/backend.h"
 #include "dreampm/base/error.h"
-#include "dreampm/solver/rigid_motion.h"
+#include "dreampm/rigid/rigid_motion.h"
 #include "dreampm/solver/step_accounting.h"
 
 namespace dreampm {

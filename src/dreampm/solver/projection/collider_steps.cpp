@@ -1,6 +1,6 @@
 #include "dreampm/solver/projection/collider_steps.h"
 
-#include "dreampm/solver/rigid_motion.h"
+#include "dreampm/rigid/rigid_motion.h"
 #include "dreampm/state/rigid_body.h"
 
 namespace dreampm {

@@ -4,9 +4,9 @@
 // the velocities that the pressure gave them; sand (grains.h) with them.
 #pragma once
 #include "dreampm/backend/backend.h"
+#include "dreampm/rigid/rigid_motion.h"
 #include "dreampm/solver/projection/mac_grid.h"
 #include "dreampm/solver/projection/matter_transfers.h"
-#include "dreampm/solver/rigid_motion.h"
 #include "dreampm/solver/step_accounting.h"
 
 namespace dreampm {
