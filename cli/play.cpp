@@ -4,10 +4,10 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/gl/bench.h"
-#include "dreampm/play/bench_play.h"
-#include "dreampm/play/headless.h"
-#include "dreampm/play/stories.h"
-#include "dreampm/play/window.h"
+#include "dreampm/play/model/bench_play.h"
+#include "dreampm/play/model/stories.h"
+#include "dreampm/play/window/headless.h"
+#include "dreampm/play/window/window.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -55,7 +55,7 @@ int play(const PlayArguments& args) {
   options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 1280, height = 720;
   if (!args.size.empty()) read_size(args.size, width, height);
-  dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
+  dreampm::play::PlayScene stage = dreampm::play::load_play_scene(args.what, static_cast<std::size_t>(args.preset - 1));
   if (args.size.empty() && stage.window) width = stage.window->width, height = stage.window->height;
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
