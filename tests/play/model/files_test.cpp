@@ -69,11 +69,11 @@ TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
   // Played, its pins can be let go, and others come beside them.
   Playground again(load_play_scene((folder / "pond.yaml").string()), quiet_options());
   EXPECT_EQ(again.simulation().time(), p.simulation().time());
-  EXPECT_EQ(again.frame()->pins.size(), 1u);
+  EXPECT_EQ(again.frame()->marks.size(), 1u);
   play(again, {"pin 0.2 0.1 0.3 0.1", "frames 1"});
-  EXPECT_EQ(again.frame()->pins.size(), 2u);
+  EXPECT_EQ(again.frame()->marks.size(), 2u);
   play(again, {"pin off", "frames 1"});
-  EXPECT_TRUE(again.frame()->pins.empty());
+  EXPECT_TRUE(again.frame()->marks.empty());
   EXPECT_TRUE(again.simulation().scene().description().fields.empty());
 }
 

@@ -328,15 +328,15 @@ TEST(Playground, SingleEditsAreUndoneOneByOne) {
   play(p, {"restart", "frames 2", "undo"});
   EXPECT_EQ(p.hash(), before);
   play(p, {"pin 0.28 0.08 0.12 0.05", "pin 0.06 0.05 0.12 0.05"});
-  EXPECT_EQ(p.frame()->pins.size(), 2u);
+  EXPECT_EQ(p.frame()->marks.size(), 2u);
   play(p, {"undo"});
-  ASSERT_EQ(p.frame()->pins.size(), 1u);
-  EXPECT_FLOAT_EQ(p.frame()->pins[0].at.x, 0.28f);
+  ASSERT_EQ(p.frame()->marks.size(), 1u);
+  EXPECT_FLOAT_EQ(p.frame()->marks[0].at.x, 0.28f);
   play(p, {"pin off"});
-  EXPECT_TRUE(p.frame()->pins.empty());
+  EXPECT_TRUE(p.frame()->marks.empty());
   EXPECT_THAT(refusal(p, "pin off"), HasSubstr("nothing is held"));
   play(p, {"undo"});
-  EXPECT_EQ(p.frame()->pins.size(), 1u);
+  EXPECT_EQ(p.frame()->marks.size(), 1u);
 }
 
 TEST(Playground, LooksStayWithTheirMatter) {

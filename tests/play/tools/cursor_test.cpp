@@ -26,7 +26,7 @@ struct Hand {
     pointer.reset_camera(*playground.frame());
   }
   void move_to(const Vec3d& at) {
-    const auto p = pointer.camera.project(static_cast<Vec3f>(at), 800, 600);
+    const auto p = pointer.camera().project(static_cast<Vec3f>(at), 800, 600);
     ASSERT_TRUE(p.has_value());
     pointer.move(*playground.frame(), static_cast<double>(p->x), static_cast<double>(p->y), time += 0.02);
   }
@@ -40,8 +40,8 @@ TEST(Cursor, FindsMatterBeforeTheFloorAndTheFloorBeforeNothing) {
   Hand hand;
   const auto frame = hand.frame();
   const auto at = [&](const Vec3d& place) {
-    const auto p = hand.pointer.camera.project(static_cast<Vec3f>(place), 800, 600);
-    return pick(*frame, hand.pointer.camera.ray(p->x, p->y, 800, 600));
+    const auto p = hand.pointer.camera().project(static_cast<Vec3f>(place), 800, 600);
+    return pick(*frame, hand.pointer.camera().ray(p->x, p->y, 800, 600));
   };
   const Hit cube = at({0.28, 0.12, 0.12});
   EXPECT_TRUE(cube.matter);
@@ -89,17 +89,17 @@ TEST(Cursor, ADragOnMatterGrabsAndElsewhereTurnsTheView) {
   hand.pointer.release(Cursor::Button::left);
   EXPECT_EQ(hand.posted.back().verb, "release");
 
-  const Vec3f eye = hand.pointer.camera.eye;
+  const Vec3f eye = hand.pointer.camera().eye;
   hand.pointer.move(*hand.frame(), 790, 10, hand.time += 0.02);
   const std::size_t posted = hand.posted.size();
   hand.pointer.press(*hand.frame(), Cursor::Button::left);
   hand.pointer.move(*hand.frame(), 700, 60, hand.time += 0.02);
   hand.pointer.release(Cursor::Button::left);
-  EXPECT_FALSE(hand.pointer.camera.eye == eye);
+  EXPECT_FALSE(hand.pointer.camera().eye == eye);
   EXPECT_EQ(hand.posted.size(), posted) << "the matter knows nothing of it";
-  const float far = hand.pointer.camera.distance();
+  const float far = hand.pointer.camera().distance();
   hand.pointer.wheel(3);
-  EXPECT_LT(hand.pointer.camera.distance(), far);
+  EXPECT_LT(hand.pointer.camera().distance(), far);
 }
 
 TEST(Cursor, EachToolDoesWhatItSays) {
@@ -146,19 +146,19 @@ TEST(Cursor, AJetStaysWhereThePointerIsWhileItFalls) {
 
 TEST(Cursor, RightDragsShiftTheViewAndTurnItWithShift) {
   Hand hand;
-  const gl::Camera before = hand.pointer.camera;
+  const gl::Camera before = hand.pointer.camera();
   hand.move_to({0.2, 0.02, 0.18});
   hand.pointer.press(*hand.frame(), Cursor::Button::right);
   hand.pointer.move(*hand.frame(), 500, 400, hand.time += 0.02);
   hand.pointer.release(Cursor::Button::right);
-  const gl::Camera shifted = hand.pointer.camera;
+  const gl::Camera shifted = hand.pointer.camera();
   EXPECT_LT(length((shifted.eye - before.eye) - (shifted.target - before.target)), 1e-5f);
   EXPECT_GT(length(shifted.eye - before.eye), 0.01f);
   hand.pointer.press(*hand.frame(), Cursor::Button::right, true);
   hand.pointer.move(*hand.frame(), 560, 400, hand.time += 0.02);
   hand.pointer.release(Cursor::Button::right);
-  EXPECT_LT(length(hand.pointer.camera.target - shifted.target), 1e-5f);
-  EXPECT_GT(length(hand.pointer.camera.eye - shifted.eye), 0.01f);
+  EXPECT_LT(length(hand.pointer.camera().target - shifted.target), 1e-5f);
+  EXPECT_GT(length(hand.pointer.camera().eye - shifted.eye), 0.01f);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "dreampm/play/model/control.h"
 
+#include <utility>
+
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/model/matter.h"
 
@@ -21,15 +23,42 @@ std::vector<std::string> compare_choices() {
 /// Of the projection: shorter steps would be as many as those of the explicit solver.
 constexpr double least_cfl = 0.5;
 
-const std::vector<std::string> off_on{"off", "on"};
+/// A control in the making. Its fallback is what Settings begin with.
+class Row {
+ public:
+  Row(SettingMember member, std::string_view panel, std::string_view id, std::string_view label)
+      : control_{{}, member, false} {
+    control_.info.id = id, control_.info.panel = panel, control_.info.label = label;
+    control_.info.fallback = control_.value(Settings{});
+    if (std::holds_alternative<bool Settings::*>(member)) control_.info.choices = {"off", "on"};
+  }
+  Row(double WorldSettings::* member, std::string_view panel, std::string_view id, std::string_view label)
+      : Row(SettingMember(member), panel, id, label) {
+    control_.of_world = true;
+  }
+  Row&& range(double min, double max, std::string_view unit) && {
+    control_.info.min = min, control_.info.max = max, control_.info.unit = unit;
+    return std::move(*this);
+  }
+  Row&& decades() && {
+    control_.info.decades = true;
+    return std::move(*this);
+  }
+  Row&& choices(std::vector<std::string> names) && {
+    control_.info.max = static_cast<double>(names.size() - 1), control_.info.choices = std::move(names);
+    return std::move(*this);
+  }
+  SettingControl help(std::string_view text) && {
+    control_.info.help = text;
+    return std::move(control_);
+  }
+
+ private:
+  SettingControl control_;
+};
 
 }  // namespace
 
-const std::vector<std::string>& tool_names() {
-  static const std::vector<std::string> names{"push", "grab", "pour", "drop", "cut", "erase", "pin", "walls"};
-  return names;
-}
-std::string_view tool_keys() { return "QGODCENW"; }
 const std::vector<std::string>& look_choices() {
   static const std::vector<std::string> names{"automatic", "points", "spheres", "matter"};
   return names;
@@ -39,85 +68,67 @@ const std::vector<std::string>& color_choices() {
   return names;
 }
 
+double SettingControl::value(const Settings& settings) const {
+  return std::visit([&](auto which) { return static_cast<double>(settings.*which); }, member);
+}
+
+void SettingControl::set(Settings& settings, double value) const {
+  if (const auto* on = std::get_if<bool Settings::*>(&member))
+    settings.** on = value != 0;
+  else if (const auto* choice = std::get_if<std::size_t Settings::*>(&member))
+    settings.** choice = static_cast<std::size_t>(value);
+  else
+    settings.*std::get<double Settings::*>(member) = value;
+}
+
 const std::vector<SettingControl>& setting_controls() {
-  static const Settings start;
-  // id, panel, label, unit, help, min, max, fallback, decades, choices
+  using S = Settings;
   static const std::vector<SettingControl> all{
-      {{"paused", "Time", "Pause", "", "time stands still; Space", 0, 1, start.paused, false, off_on},
-       &Settings::paused,
-       false},
-      {{"speed", "Time", "Playback speed", "x",
-        "simulated seconds a second; slower shows more, and changes nothing else", 1.0 / 64, 1, start.speed, true},
-       &Settings::speed,
-       false},
-      {{"cfl", "Time", "Cells in a step", "",
-        "that most matter crosses in a large step: 1 keeps more of a splash, 3 is faster; small ones show more",
-        least_cfl, largest_projection_cfl, start.cfl},
-       &Settings::cfl,
-       true},
-      {{"time_step", "Report", "Time Step", "x 1e-4 s",
-        "asked for each of the 25 substeps of a drawn frame; what is taken is what the matter can take", 0, 4,
-        start.time_step},
-       &Settings::time_step,
-       false},
-      {{"auto_restart", "Report", "Auto Restart", "",
-        "on: a change of the material begins anew; off: it forgets the deformation, and goes on where it is", 0, 1,
-        start.auto_restart, false, off_on},
-       &Settings::auto_restart,
-       false},
-      {{"gravity.x", "World", "Gravity x", "m/s^2", "to the right", -10, 10, start.gravity_x},
-       &Settings::gravity_x,
-       true},
-      {{"gravity.y", "World", "Gravity y", "m/s^2", "up; the earth's is -9.81", -10, 10, start.gravity_y},
-       &Settings::gravity_y,
-       true},
-      {{"gravity.z", "World", "Gravity z", "m/s^2", "to the front", -10, 10, start.gravity_z},
-       &Settings::gravity_z,
-       true},
-      {{"matter", "Matter", "Matter", "", "what is poured and dropped; keys 1 to 0", 0,
-        static_cast<double>(matters().size() - 1), start.matter, false, matter_titles()},
-       &Settings::matter,
-       false},
-      {{"tool", "Hand", "Tool", "", "what a drag with the left button does", 0,
-        static_cast<double>(tool_names().size() - 1), start.tool, false, tool_names()},
-       &Settings::tool,
-       false},
-      {{"radius", "Hand", "Brush radius", "m", "of the ring under the cursor", 0.02, 0.3, start.radius, true},
-       &Settings::radius,
-       false},
-      {{"strength", "Hand", "Brush strength", "", "how firmly the brush takes matter along", 0.1, 10, start.strength,
-        true},
-       &Settings::strength,
-       false},
-      {{"drop", "Hand", "Drop a", "",
-        "what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter", 0,
-        static_cast<double>(drop_names().size() - 1), start.drop, false, drop_names()},
-       &Settings::drop,
-       false},
-      {{"compare_with", "Compare", "Side B", "", "what takes the place of the main matter there", 0,
-        static_cast<double>(matters().size()), start.compare_with, false, compare_choices()},
-       &Settings::compare_with,
-       false},
-      {{"look", "Picture", "Look", "", "automatic: the best that this machine draws in time", 0,
-        static_cast<double>(look_choices().size() - 1), start.look, false, look_choices()},
-       &Settings::look,
-       false},
-      {{"color_by", "Picture", "Color by", "", "material, or a number with its scale", 0,
-        static_cast<double>(color_choices().size() - 1), start.color_by, false, color_choices()},
-       &Settings::color_by,
-       false},
-      {{"random_colors", "Picture", "Use Random Colors", "", "each particle in a color of its own", 0, 1,
-        start.random_colors, false, off_on},
-       &Settings::random_colors,
-       false},
-      {{"dark", "Picture", "Dark", "", "a dark background", 0, 1, start.dark, false, off_on}, &Settings::dark, false},
-      {{"scale_bar", "Picture", "Scale bar", "", "a length, at the depth of the middle of the box", 0, 1,
-        start.scale_bar, false, off_on},
-       &Settings::scale_bar,
-       false},
-      {{"outline", "Picture", "Edges of the box", "", "", 0, 1, start.outline, false, off_on},
-       &Settings::outline,
-       false},
+      Row(&S::paused, "Time", "paused", "Pause").help("time stands still; Space"),
+      Row(&S::speed, "Time", "speed", "Playback speed")
+          .range(1.0 / 64, 1, "x")
+          .decades()
+          .help("simulated seconds a second; slower shows more, and changes nothing else"),
+      Row(&S::cfl, "Time", "cfl", "Cells in a step")
+          .range(least_cfl, largest_projection_cfl, "")
+          .help("that most matter crosses in a large step: 1 keeps more of a splash, 3 is faster; small ones show more"),
+      Row(&S::time_step, "Report", "time_step", "Time Step")
+          .range(0, 4, "x 1e-4 s")
+          .help("asked for each of the 25 substeps of a drawn frame; what is taken is what the matter can take"),
+      Row(&S::auto_restart, "Report", "auto_restart", "Auto Restart")
+          .help("on: a change of the material begins anew; off: it forgets the deformation, and goes on where it is"),
+      Row(&S::gravity_x, "World", "gravity.x", "Gravity x").range(-10, 10, "m/s^2").help("to the right"),
+      Row(&S::gravity_y, "World", "gravity.y", "Gravity y").range(-10, 10, "m/s^2").help("up; the earth's is -9.81"),
+      Row(&S::gravity_z, "World", "gravity.z", "Gravity z").range(-10, 10, "m/s^2").help("to the front"),
+      Row(&S::matter, "Matter", "matter", "Matter")
+          .choices(matter_titles())
+          .help("what is poured and dropped; keys 1 to 0"),
+      Row(&S::tool, "Hand", "tool", "Tool").choices(tool_names()).help("what a drag with the left button does"),
+      Row(&S::radius, "Hand", "radius", "Brush radius")
+          .range(0.02, 0.3, "m")
+          .decades()
+          .help("of the ring under the cursor"),
+      Row(&S::strength, "Hand", "strength", "Brush strength")
+          .range(0.1, 10, "")
+          .decades()
+          .help("how firmly the brush takes matter along"),
+      Row(&S::drop, "Hand", "drop", "Drop a")
+          .choices(drop_names())
+          .help("what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter"),
+      Row(&S::compare_with, "Compare", "compare_with", "Side B")
+          .choices(compare_choices())
+          .help("what takes the place of the main matter there"),
+      Row(&S::look, "Picture", "look", "Look")
+          .choices(look_choices())
+          .help("automatic: the best that this machine draws in time"),
+      Row(&S::color_by, "Picture", "color_by", "Color by")
+          .choices(color_choices())
+          .help("material, or a number with its scale"),
+      Row(&S::random_colors, "Picture", "random_colors", "Use Random Colors")
+          .help("each particle in a color of its own"),
+      Row(&S::dark, "Picture", "dark", "Dark").help("a dark background"),
+      Row(&S::scale_bar, "Picture", "scale_bar", "Scale bar").help("a length, at the depth of the middle of the box"),
+      Row(&S::outline, "Picture", "outline", "Edges of the box").help(""),
   };
   return all;
 }

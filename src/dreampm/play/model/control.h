@@ -1,7 +1,9 @@
 // What can be set in the playground: the one list that panel, scripts, help and tests go by.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace dreampm::play {
@@ -38,45 +40,56 @@ struct LiveRange {
   bool min_is_soft = false, max_is_soft = false;
 };
 
+/// What is set of the world itself: undo takes it back.
+struct WorldSettings {
+  double cfl = 2;                                          ///< of the projection: cells that matter crosses in a step
+  double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s^2
+
+  bool operator==(const WorldSettings&) const = default;
+};
+
 /// How a playground is set, apart from its matter.
-struct Settings {
+struct Settings : WorldSettings {
   // Of time.
-  double paused = 0;
+  bool paused = false;
   double speed = 1;      ///< simulated seconds a second
   double time_step = 2;  ///< of the report's scenes [1e-4 s], of which a drawn frame takes 25
-  double auto_restart = 1;
-  double cfl = 2;  ///< of the projection: cells that matter crosses in a step
-  // Of the world.
-  double gravity_x = 0, gravity_y = -9.81, gravity_z = 0;  ///< m/s^2
-  // Of the hand.
-  double matter = 0;        ///< index into matters()
-  double tool = 0;          ///< index into tool_names()
-  double radius = 0.08;     ///< m, of the brush
-  double strength = 1;      ///< of the brush
-  double drop = 0;          ///< index into drop_names()
-  double compare_with = 0;  ///< 0: the same; from 1 on an index into matters(), plus 1
+  bool auto_restart = true;
+  // Of the tools.
+  std::size_t matter = 0;        ///< index into matters()
+  std::size_t tool = 0;          ///< index into tool_names()
+  double radius = 0.08;          ///< m, of the brush
+  double strength = 1;           ///< of the brush
+  std::size_t drop = 0;          ///< index into drop_names()
+  std::size_t compare_with = 0;  ///< 0: the same; from 1 on an index into matters(), plus 1
   // Of the picture.
-  double look = 0;      ///< index into look_choices()
-  double color_by = 0;  ///< index into color_choices()
-  double random_colors = 0;
-  double dark = 0;
-  double outline = 1;
-  double scale_bar = 1;
+  std::size_t look = 0;      ///< index into look_choices()
+  std::size_t color_by = 0;  ///< index into color_choices()
+  bool random_colors = false;
+  bool dark = false;
+  bool outline = true;
+  bool scale_bar = true;
 
   bool operator==(const Settings&) const = default;
 };
 
-/// A setting that is a member of Settings.
+/// A member of Settings: a switch, one of some choices, or a number.
+using SettingMember = std::variant<bool Settings::*, std::size_t Settings::*, double Settings::*>;
+
+/// A setting that is a member of Settings. In scripts, panels and frames its value is a number.
 struct SettingControl {
   ControlInfo info;
-  double Settings::* member;
-  bool of_world;  ///< whether it changes what happens, and not only how it is seen or worked on
+  SettingMember member;
+  bool of_world = false;  ///< whether it changes what happens, and not only how it is seen or worked on
+
+  double value(const Settings& settings) const;
+  /// `value` is in the range of the control, and whole where it has choices.
+  void set(Settings& settings, double value) const;
 };
 const std::vector<SettingControl>& setting_controls();
 
+/// Of the tools that have a button, in its order (tools/tools.cpp).
 const std::vector<std::string>& tool_names();
-/// The keys that choose them, in their order.
-std::string_view tool_keys();
 const std::vector<std::string>& drop_names();
 const std::vector<std::string>& look_choices();
 const std::vector<std::string>& color_choices();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/play/model/action.h"
 #include "dreampm/play/model/control.h"
 #include "dreampm/pose.h"
 #include "dreampm/vec.h"
@@ -46,10 +47,16 @@ struct BodyFrame {
   float opacity = 1;
 };
 
-/// Where matter is held.
-struct PinFrame {
+/// A place that a tool shows: a level circle with a cross.
+struct PlaceMark {
   Vec3f at;
   float radius;  ///< m
+};
+
+/// A button that a tool has below those of all tools, as long as there is something for it.
+struct ToolButton {
+  std::string text;
+  Action action;
 };
 
 /// What happens between asking and taking.
@@ -111,7 +118,8 @@ struct Frame {
   std::vector<double> values;      ///< of the controls
   std::vector<LiveRange> live;     ///< of the controls
   std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
-  std::vector<PinFrame> pins;
+  std::vector<PlaceMark> marks;       ///< of tools
+  std::vector<ToolButton> buttons;    ///< of tools
   std::string preset_file;                        ///< of the report: the config, and its presets
   std::vector<std::string> presets;               ///< names
   std::size_t preset = 0;                         ///< which of them is played

@@ -16,9 +16,9 @@ struct LoadedScene;
 
 /// A moment to go back to.
 struct StateSnapshot {
-  std::shared_ptr<const LoadedScene> opened;  ///< what was played
+  std::shared_ptr<const LoadedScene> loaded;  ///< what was played
   Snapshot snapshot;
-  Settings settings;
+  WorldSettings world;
   double played = 0;  ///< s of playing since the start, which going back takes back
 };
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "dreampm/play/model/action.h"
-#include "dreampm/play/model/playground_impl.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -30,7 +30,7 @@ std::string lost_text(const std::array<std::uint64_t, 6>& by_side) {
   return sum == 0 ? "" : fmt::format("{} particle{} left by {}", grouped(sum), sum == 1 ? "" : "s", by);
 }
 
-void Playground::Impl::see_losses() {
+void PlayModel::see_losses() {
   const scene::Space& space = simulation->scene().description().space;
   if (std::none_of(space.walls.begin(), space.walls.end(), [](const auto& w) { return w.type == WallType::open; }))
     return;
@@ -44,19 +44,19 @@ void Playground::Impl::see_losses() {
   const std::uint64_t gone = simulation->counts().left;
   const std::uint64_t more = gone - std::min(gone, losses.seen);
   if (more > 0) {
-    if (played > losses.last + lossless) losses.gone = {};
+    if (clock.played > losses.last + lossless) losses.gone = {};
     // By the side beyond which most were: they are taken out a box's width behind it.
     const auto side = std::max_element(losses.out.begin(), losses.out.end()) - losses.out.begin();
     losses.gone[std::size_t(side)] += more, losses.all[std::size_t(side)] += more;
-    losses.last = played, losses.unsaid = true;
+    losses.last = clock.played, losses.unsaid = true;
   }
   losses.seen = gone, losses.out = out;
-  if (!losses.unsaid || played < losses.said + loss_pause) return;
-  losses.said = played, losses.unsaid = false;
+  if (!losses.unsaid || clock.played < losses.said + loss_pause) return;
+  losses.said = clock.played, losses.unsaid = false;
   say(fmt::format("{}: {}", lost_text(losses.gone), history.can_undo() ? "Undo" : "Rewind"));
 }
 
-void Playground::Impl::forget_losses() {
+void PlayModel::forget_losses() {
   losses = {.all = losses.all};
   losses.seen = simulation->counts().left;
 }

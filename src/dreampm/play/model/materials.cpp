@@ -10,7 +10,7 @@
 #include "dreampm/play/model/live_range.h"
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/number_text.h"
-#include "dreampm/play/model/playground_impl.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/play/report/report_config.h"
 #include "dreampm/play/report/report_looks.h"
@@ -152,19 +152,19 @@ std::vector<std::string> mistyped_parameters() {
   return wrong;
 }
 
-void Playground::Impl::list_controls() {
+void PlayModel::list_controls() {
   auto all = std::make_shared<std::vector<ControlInfo>>();
   for (const SettingControl& c : setting_controls()) {
     if (c.info.panel == "Report" && !play_scene().report) continue;
-    if (c.member == &Settings::cfl && !is_projection(play_scene().scene.description())) continue;
+    if (c.info.id == "cfl" && !is_projection(play_scene().scene.description())) continue;
     all->push_back(c.info);
-    if (c.member == &Settings::cfl) all->back().fallback = play_scene().scene.description().time.cfl;
+    if (c.info.id == "cfl") all->back().fallback = play_scene().scene.description().time.cfl;
     if (c.info.id == "time_step") all->back().max = play_scene().max_time_step;
     // Back to the gravity of the scene.
     const Vec3d& own = play_scene().scene.description().gravity;
-    if (c.member == &Settings::gravity_x) all->back().fallback = own.x;
-    if (c.member == &Settings::gravity_y) all->back().fallback = own.y;
-    if (c.member == &Settings::gravity_z) all->back().fallback = own.z;
+    if (c.info.id == "gravity.x") all->back().fallback = own.x;
+    if (c.info.id == "gravity.y") all->back().fallback = own.y;
+    if (c.info.id == "gravity.z") all->back().fallback = own.z;
   }
   const scene::SceneDescription& scene = simulation->scene().description();
   // Colors stay as they are set.
@@ -204,16 +204,16 @@ void Playground::Impl::list_controls() {
   refusals = matter_refusals(scene);
 }
 
-float* Playground::Impl::look_member(const std::string& id) {
+float* PlayModel::look_member(const std::string& id) {
   for (const std::string& name : simulation->scene().materials())
     for (const LookControl& l : look_controls)
       if (id == fmt::format("{}{}.{}", prefix, name, l.key)) return l.member(looks.at(name));
   return nullptr;
 }
 
-double Playground::Impl::value_of(const ControlInfo& control) {
+double PlayModel::value_of(const ControlInfo& control) {
   for (const SettingControl& c : setting_controls())
-    if (c.info.id == control.id) return settings.*c.member;
+    if (c.info.id == control.id) return c.value(settings);
   if (const float* member = look_member(control.id)) return static_cast<double>(*member);
   const Named n = named_by(control.id);
   for (const scene::Material& m : simulation->scene().description().materials)
@@ -221,7 +221,7 @@ double Playground::Impl::value_of(const ControlInfo& control) {
   return control.fallback;
 }
 
-void Playground::Impl::set(const std::string& id, double value) {
+void PlayModel::set(const std::string& id, double value) {
   const auto control = std::find_if(controls->begin(), controls->end(), [&](const auto& c) { return c.id == id; });
   if (control == controls->end()) {
     std::string names;
@@ -238,7 +238,7 @@ void Playground::Impl::set(const std::string& id, double value) {
     // A tilt sets all of gravity: one edit.
     if (c.of_world) before_edit("set " + id.substr(0, id.find('.')));
     const std::vector<double> before = asked_values();
-    settings.*c.member = value;
+    c.set(settings, value);
     if (c.of_world) see_softness(before);
     return;
   }
@@ -251,10 +251,10 @@ void Playground::Impl::set(const std::string& id, double value) {
   const std::vector<double> before = asked_values();
   targets[id] = value;
   if (is_of_firmness(named_by(id).key)) see_softness(before);
-  if (play_scene().report && settings.auto_restart != 0) restart_is_due = true;
+  if (play_scene().report && settings.auto_restart) clock.restart_is_due = true;
 }
 
-std::vector<double> Playground::Impl::asked_values() {
+std::vector<double> PlayModel::asked_values() {
   std::vector<double> values;
   for (const ControlInfo& c : *controls) {
     const auto target = targets.find(c.id);
@@ -263,32 +263,30 @@ std::vector<double> Playground::Impl::asked_values() {
   return values;
 }
 
-void Playground::Impl::see_softness(const std::vector<double>& before) {
+void PlayModel::see_softness(const std::vector<double>& before) {
   const std::string soft = too_soft(*simulation, *controls, asked_values());
   if (soft.empty() || soft == too_soft(*simulation, *controls, before)) return;
   say(fmt::format("{} is so soft that what lies on it, or a fall, may crush it for good: Undo", soft));
 }
 
-void Playground::Impl::take_look(const ReportLook& look) {
+void PlayModel::take_look(const ReportLook& look) {
   const std::string name = report_material_name(diy_material);
   const auto id_of = [&](std::string_view key) { return fmt::format("{}{}.{}", prefix, name, key); };
   const auto has = [&](const ControlInfo& c) { return c.id == id_of("v"); };
   if (!play_scene().report || std::none_of(controls->begin(), controls->end(), has))
     throw InputError("look: only the report's scenes have its material; open report 1");
-  // One edit, whatever it sets.
-  history.separate();
-  before_edit("look");
-  history.separate();
+  // Whatever it sets.
+  before_own_edit("look");
   for (const auto& [key, value] : look.values()) targets[id_of(key)] = value;
-  if (settings.auto_restart != 0) restart_is_due = true;
+  if (settings.auto_restart) clock.restart_is_due = true;
 }
 
-void Playground::Impl::set_material(const std::string& id, double value) {
+void PlayModel::set_material(const std::string& id, double value) {
   const Named n = named_by(id);
   simulation->set_parameter(n.material, n.key, value);
 }
 
-void Playground::Impl::approach_targets() {
+void PlayModel::approach_targets() {
   for (auto target = targets.begin(); target != targets.end();) {
     const auto& [id, wanted] = *target;
     const auto control =
@@ -313,14 +311,15 @@ void Playground::Impl::approach_targets() {
       continue;
     }
     // Of the report: the deformation is forgotten, places and velocities are kept.
-    if (play_scene().report && settings.auto_restart == 0) simulation->reset_state(named_by(id).material);
+    if (play_scene().report && !settings.auto_restart) simulation->reset_state(named_by(id).material);
     target = targets.erase(target);
   }
 }
 
-std::string Playground::Impl::ensure_matter(std::size_t kind) {
-  if (stand_in && matters()[kind].name == stand_in_for && !other_liquid(simulation->scene().description(), *stand_in))
-    kind = *stand_in;
+std::string PlayModel::ensure_matter(std::size_t kind) {
+  if (const auto& own = compared.stand_in; own && matters()[kind].name == compared.stand_in_for &&
+                                           !other_liquid(simulation->scene().description(), *own))
+    kind = *own;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();
   if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
@@ -331,7 +330,7 @@ std::string Playground::Impl::ensure_matter(std::size_t kind) {
   return std::string(matter.name);
 }
 
-std::string Playground::Impl::remedy() const {
+std::string PlayModel::remedy() const {
   if (is_projection(simulation->scene().description()))
     return meters.limiter == "speed"  ? "more cells in a step, slower matter, or a larger spacing"
            : meters.limiter == "wave" ? "a larger spacing, or less gravity"
@@ -357,7 +356,7 @@ std::string Playground::Impl::remedy() const {
   return name.empty() ? known->second : fmt::format("{}: {}", name, known->second);
 }
 
-std::vector<std::string> Playground::Impl::facts() const {
+std::vector<std::string> PlayModel::facts() const {
   std::vector<std::string> lines;
   const scene::SceneDescription& scene = simulation->scene().description();
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {

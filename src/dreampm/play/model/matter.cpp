@@ -54,4 +54,10 @@ std::size_t compared_with(std::size_t kind) {
   return static_cast<std::size_t>(std::ranges::find(kinds, kinds[kind].beside, &Matter::name) - std::begin(kinds));
 }
 
+Action compare_with(std::size_t choice) {
+  Action action{"compare", {"on"}};
+  if (choice > 0) action.words.emplace_back(matters()[choice - 1].name);
+  return action;
+}
+
 }  // namespace dreampm::play

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "dreampm/vec.h"
+#include "dreampm/play/model/action.h"
 
 namespace dreampm::play {
 
@@ -25,5 +26,8 @@ std::span<const Matter> matters();
 std::optional<std::size_t> kind_of(std::string_view name, std::string_view type, double viscosity);
 /// The kind that one is compared with.
 std::size_t compared_with(std::size_t kind);
+
+/// What compares with the choice of the control `compare_with`.
+Action compare_with(std::size_t choice);
 
 }  // namespace dreampm::play

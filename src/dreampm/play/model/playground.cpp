@@ -3,231 +3,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <chrono>
-#include <cmath>
-#include <filesystem>
+#include <exception>
+#include <utility>
 
-#include "dreampm/base/seconds_since.h"
+#include "dreampm/base/hash.h"
 #include "dreampm/error.h"
-#include "dreampm/play/model/playground_impl.h"
-#include "dreampm/play/model/solver_choice.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
-namespace {
 
-/// Failures in a row after which the world begins anew instead of going back.
-constexpr int most_failures = 3;
-/// s: how long steps go on without asking whether the tick shall end.
-constexpr double ask_every = 4e-3;
-/// Cells that surfaces which move may be off. What a step knows of them is found anew less often
-/// than in a run: that is a third of the time of boxes that float.
-constexpr double slack_of_moving = 0.05;
-
-void loosen_surfaces(Simulation& simulation) {
-  for (const std::string& name : simulation.names().colliders)
-    if (const ColliderState c = simulation.collider(name); c.moves && !c.deforms)
-      simulation.set_slack(name, std::max(c.slack, slack_of_moving));
-}
-
-}  // namespace
-
-Playground::Impl::Impl(PlayScene first, const PlayOptions& o) : options(o), history(o.history_bytes) {
-  open(begin(std::move(first)));
-}
-
-Playground::Impl::Begun Playground::Impl::begin(PlayScene stage) const {
-  const auto held = take_pins(stage.scene);
-  Simulation fresh(stage.scene, options.simulation);
-  for (const auto& [name, stroke] : held) fresh.set_brush(name, stroke);
-  loosen_surfaces(fresh);
-  return {std::move(stage), std::move(fresh)};
-}
-
-void Playground::Impl::open(Begun next) {
-  if (simulation) {
-    history.separate();
-    before_edit("open");
-    history.separate();
-  }
-  auto what = std::make_shared<LoadedScene>(LoadedScene{std::move(next.stage), next.simulation.snapshot()});
-  enter(std::move(what), std::move(next.simulation));
-  settings.gravity_x = gravity.x, settings.gravity_y = gravity.y, settings.gravity_z = gravity.z;
-  settings.time_step = std::min(settings.time_step, play_scene().max_time_step);
-  settings.cfl =
-      is_projection(play_scene().scene.description()) ? play_scene().scene.description().time.cfl : Settings{}.cfl;
-  choose_matter();
-}
-
-void Playground::Impl::enter(std::shared_ptr<const LoadedScene> what, Simulation fresh) {
-  opened = std::move(what);
-  simulation.emplace(std::move(fresh));
-  owed = 0;
-  targets.clear(), grab.reset(), push.reset(), pour.reset(), bodies.clear(), looks.clear(), walls = {};
-  restart_is_due = single_step = false, drops = failures = 0, shake = {};
-  gravity = play_scene().scene.description().gravity;
-  no_other = why_not_other(play_scene());
-  list_controls();
-  ages.forget(), seen_until.reset(), see_new_matter();
-  losses = {}, forget_losses();
-}
-
-void Playground::Impl::restart() {
-  // Materials stay as they are set.
-  std::map<std::string, double> values;
-  for (const ControlInfo& c : *controls)
-    if (c.id.starts_with("material.") && !look_member(c.id))
-      values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
-  simulation->restore(opened->start);
-  list_controls();
-  targets.clear();
-  for (const ControlInfo& c : *controls) {
-    const auto value = values.find(c.id);
-    if (value != values.end() && value->second != value_of(c)) set_material(c.id, value->second);
-  }
-  restart_is_due = false;
-  let_go();
-}
-
-void Playground::Impl::let_go() {
-  // The snapshot may be of a moment at which a hand was there.
-  simulation->lift_brush("push"), simulation->lift_brush("grab");
-  simulation->let_go();
-  ages.back_to(simulation->time()), seen_until.reset();
-  grab.reset(), push.reset(), pour.reset(), shake = {}, owed = 0;
-  stop_walls();
-  gravity = simulation->scene().description().gravity;
-  forget_losses();
-}
-
-void Playground::Impl::go_to(const StateSnapshot& moment) {
-  if (moment.opened != opened) enter(moment.opened, Simulation(moment.opened->stage.scene, options.simulation));
-  simulation->restore(moment.snapshot);
-  // How the world is seen and worked on is not undone.
-  for (const SettingControl& c : setting_controls())
-    if (c.of_world) settings.*c.member = moment.settings.*c.member;
-  played = moment.played;
-  targets.clear();
-  let_go();
-  list_controls();
-}
-
-double Playground::Impl::asked_seconds() const {
-  return settings.speed * (play_scene().report ? report_substeps * settings.time_step * 1e-4 : 1 / ticks_a_second);
-}
-
-int Playground::Impl::advance(const Limit& limit) {
-  const auto began = std::chrono::steady_clock::now();
-  const double from = simulation->time(), asked = asked_seconds();
-  // Of a pace below a step a tick, whole steps are saved up for. A side that stands still since the
-  // other does owes nothing.
-  if (limit.simulated)
-    owed += *limit.simulated;
-  else if (!limit.steps || *limit.steps > 0)
-    owed = std::min(owed + asked, std::max(2 * asked, simulation->dt()));
-  int taken = 0;
-  bool gave_way = false;
-  const auto steps = [&](int count) {
-    const auto at = std::chrono::steady_clock::now();
-    const double before = simulation->time();
-    // The force on a wall is the mean over the tick, in however many calls it is done.
-    const StepReport last = simulation->advance_steps(count, taken > 0 ? ForceMean::goes_on : ForceMean::of_this_call);
-    step_seconds = 0.5 * (step_seconds + seconds_since(at) / count);
-    owed -= last.time - before;
-    meters.taken_dt = last.dt;
-    // The last step of a frame ends with it; what limited those before says more.
-    if (last.limiter != "frame" || meters.limiter.empty()) meters.limiter = last.limiter;
-    taken += count;
-  };
-  if (limit.steps) {
-    if (*limit.steps > 0) steps(*limit.steps);
-  } else {
-    bool in_time = true;
-    while (in_time && owed > 0.5 * simulation->dt()) {
-      if (taken > 0 && limit.gives_way && (gave_way = limit.gives_way())) break;
-      int count = std::max(1, static_cast<int>(std::lround(owed / simulation->dt())));
-      if (limit.seconds) {
-        const double left = *limit.seconds - seconds_since(began);
-        in_time = taken == 0 || (left > 0 && !(limit.ends && limit.ends(*limit.seconds - left)));
-        if (!in_time) break;
-        const bool is_asked = limit.ends || limit.gives_way;
-        count = std::clamp(static_cast<int>((is_asked ? std::min(left, ask_every) : left) / step_seconds), 1, count);
-      }
-      steps(count);
-    }
-    if (!in_time) owed = std::min(owed, 0.0);  // what could not be done in time is left out
-  }
-  if (taken > 0) {
-    const double each = seconds_since(began) / taken;
-    mean_step_seconds += (mean_step_seconds > 0 ? 1 / ticks_a_second : 1) * (each - mean_step_seconds);
-  }
-  meters.substeps = taken, meters.remedy = remedy();
-  meters.step_ms = 1e3 * step_seconds;
-  meters.asked_dt = play_scene().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
-  // A tick that gave way says nothing about the pace.
-  if (!gave_way) meters.rate = asked > 0 ? std::min((simulation->time() - from) / asked, 1.0) : 1;
-  // A step that is longer than the tick may be has held up those to come.
-  if (const double took = seconds_since(began); !gave_way && limit.seconds && took > *limit.seconds)
-    meters.rate *= std::min(1.0, 1 / (ticks_a_second * took));
-  return taken;
-}
-
-Playground::Playground(PlayScene stage, const PlayOptions& options)
-    : impl_(std::make_unique<Impl>(std::move(stage), options)) {}
+Playground::Playground(PlayScene scene, const PlayOptions& options)
+    : first_(std::make_unique<PlayModel>(std::move(scene), options)) {}
 Playground::~Playground() = default;
 
-void Playground::Impl::jump(Jump where, const std::string& why) {
-  const StateSnapshot* before = where == Jump::back ? history.latest() : nullptr;
-  if (before)
-    go_to(*before);
-  else
-    restart();
-  jumped = before ? Jump::back : Jump::anew;
-  say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why), true);
-}
-
-int Playground::Impl::fail(std::uint64_t before_steps, const std::string& why) {
-  // Counts the step that failed: a tick of this number of steps fails again.
-  const int taken = static_cast<int>(simulation->steps() - before_steps) + 1;
-  // Nothing breaks it: what was before goes on, without what the hand did.
-  jump(++failures < most_failures ? Jump::back : Jump::anew, why);
-  return taken;
-}
-
-int Playground::Impl::tick(const Limit& limit) {
-  ++ticks;
-  jumped = Jump::none;
-  if (restart_is_due) restart();
-  // A counted tick of no steps is one that stood still when it was recorded.
-  if (settings.paused != 0 && !single_step && !limit.simulated && limit.steps.value_or(0) == 0) {
-    meters.substeps = 0;
-    return 0;
-  }
-  const double seconds = asked_seconds();
-  const std::uint64_t before_steps = simulation->steps();
-  int taken = 0;
-  try {
-    approach_targets();
-    apply_hand(seconds);
-    const bool single = std::exchange(single_step, false);
-    taken = advance(single && !limit.simulated ? Limit{1, {}} : limit);
-    failures = 0;
-  } catch (const NumericalFailure& e) {
-    taken = fail(before_steps, e.what());
-  } catch (const InputError& e) {
-    // What the hand or a slider asked for does not go with the scene.
-    taken = fail(before_steps, e.what());
-  }
-  see_new_matter();
-  see_losses();
-  played += 1 / ticks_a_second;
-  if (history.is_due(played)) history.keep(moment());
-  return taken;
+PlayModel& Playground::chosen() const {
+  return comparison_ && comparison_->second_is_chosen ? *comparison_->second : *first_;
 }
 
 void Playground::act(const Action& action) {
-  ++impl_->actions;
+  ++first_->actions;
   const auto entry = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == action.verb; });
   if (entry == verbs().end()) {
     std::string names;
@@ -237,10 +32,10 @@ void Playground::act(const Action& action) {
   try {
     if (entry->run_whole)
       entry->run_whole(*this, action);
-    else if (second_)
+    else if (comparison_)
       act_on_both(*entry, action);
     else
-      entry->run(*impl_, action);
+      entry->run(*first_, action);
   } catch (const Error& e) {
     chosen().say(e.what(), true);
     share_message();
@@ -249,23 +44,152 @@ void Playground::act(const Action& action) {
   share_message();
 }
 
-std::shared_ptr<Frame> Playground::Impl::frame() {
-  // One that nobody reads any more keeps its memory.
-  auto idle = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.use_count() == 1; });
-  // What its last reader did comes before what is written into it.
-  std::atomic_thread_fence(std::memory_order_acquire);
-  if (idle == frames.end()) idle = frames.insert(idle, std::make_shared<Frame>());
-  read(**idle);
-  return *idle;
+void Playground::compare(std::optional<std::size_t> kind) {
+  PlayModel& first = *first_;
+  first.compared.main = first.main_material();
+  PlayOptions options = first.options;
+  auto second = std::make_unique<PlayModel>(first.play_scene(), options);
+  second->copy(first, kind);
+  // All three share the memory that one had.
+  History past = comparison_ ? std::move(comparison_->before) : std::move(first.history);
+  options.history_bytes = first.options.history_bytes / 3;
+  past.limit(options.history_bytes), past.separate();
+  first.history = History(options.history_bytes), second->history = History(options.history_bytes);
+  first.end_tools();
+  comparison_ = Comparison{std::move(second), std::move(past), kind};
+}
+
+void Playground::choose_side(bool second) {
+  if (!comparison_) throw InputError("compare: there is one side; `compare on` starts the other");
+  comparison_->second_is_chosen = second;
+}
+
+void Playground::end_comparison() {
+  if (!comparison_) throw InputError("compare: nothing is compared");
+  first_->history = std::move(comparison_->before);
+  comparison_.reset();
+  first_->history.limit(first_->options.history_bytes);
+}
+
+void Playground::open(PlayScene scene) {
+  if (size_ && !scene.report && scene.scene.description().start.empty()) scene = resized(std::move(scene), *size_);
+  PlayModel::Begun next = first_->begin(std::move(scene));  // where it throws, nothing has changed
+  if (!comparison_) return first_->open(std::move(next));
+  // The comparison is of the new scene; what was before it is as it was left.
+  const auto kind = comparison_->kind;
+  end_comparison();
+  first_->open(std::move(next));
+  compare(kind);
+}
+
+void Playground::act_on_both(const Verb& verb, const Action& action) {
+  PlayModel* const sides[] = {first_.get(), comparison_->second.get()};
+  // Of what memory holds no longer, one side may have more.
+  if (verb.check)
+    for (const PlayModel* side : sides) verb.check(*side);
+  const bool of_one_side = verb.of_one_side && verb.of_one_side(action);
+  std::uint64_t before[2];
+  std::exception_ptr refused[2];
+  bool any = false;
+  for (int n = 0; n < 2; ++n) {
+    before[n] = sides[n]->history.edits();
+    if (of_one_side && sides[n] != &chosen()) continue;
+    try {
+      verb.run(*sides[n], action);
+      any = true;
+    } catch (const InputError& e) {
+      refused[n] = std::current_exception();
+      sides[n]->say(fmt::format("{}: {}", n == 0 ? "A" : "B", e.what()), true);
+    }
+  }
+  if (!any) std::rethrow_exception(refused[0] ? refused[0] : refused[1]);
+  // Both stay at the same time.
+  bool &one = sides[0]->clock.restart_is_due, &other = sides[1]->clock.restart_is_due;
+  one = other = one || other;
+  // An edit of one side is one of the other too, which does not change it: undo takes both back to
+  // the same moment.
+  for (int n = 0; n < 2; ++n) {
+    History& own = sides[n]->history;
+    if (sides[1 - n]->history.edits() == before[1 - n] || own.edits() != before[n]) continue;
+    own.separate();
+    sides[n]->before_edit(sides[1 - n]->history.last_edit());
+  }
+}
+
+void Playground::share_message() {
+  if (!comparison_) return;
+  Message &a = first_->message, &b = comparison_->second->message;
+  (a.number < b.number ? a : b) = a.number < b.number ? b : a;
+}
+
+int Playground::tick(const Limit& limit) {
+  PlayModel& first = *first_;
+  if (!comparison_) return first.tick(limit);
+  PlayModel& second = *comparison_->second;
+  Limit own = limit;
+  if (limit.seconds) {
+    // What the second side will take comes out of the same time.
+    const double cost = first.cost.latest / first.simulation->dt(),
+                 others = second.cost.latest / second.simulation->dt();
+    own.seconds = *limit.seconds * cost / (cost + others);
+  }
+  const double from = first.simulation->time();
+  const int taken = first.tick(own);
+  const auto follow = [](PlayModel& to, const PlayModel& jumped) {
+    if (jumped.clock.jumped != Jump::none && to.clock.jumped == Jump::none)
+      to.jump(jumped.clock.jumped, "so did the other side");
+  };
+  if (first.clock.jumped != Jump::none) {
+    follow(second, first);
+    second.clock.played = first.clock.played;
+  } else if (taken == 0) {
+    second.tick({0, {}});
+  } else {
+    second.tick({{}, {}, first.simulation->time() - from});
+    follow(first, second);
+    first.clock.played = second.clock.played;
+  }
+  share_message();
+  return taken;
+}
+
+std::shared_ptr<const Frame> Playground::frame() {
+  const std::shared_ptr<Frame> own = chosen().frame();
+  own->actions = first_->actions;
+  own->side = 0, own->other.reset();
+  if (!comparison_) return own;
+  const bool is_second = comparison_->second_is_chosen;
+  PlayModel& beside = is_second ? *first_ : *comparison_->second;
+  const std::shared_ptr<Frame> other = beside.frame();
+  other->other.reset();
+  own->side = is_second ? 'B' : 'A', other->side = is_second ? 'A' : 'B';
+  own->side_name = chosen().compared.main, other->side_name = beside.compared.main;
+  // One scale for both.
+  own->value_min = other->value_min = std::min(own->value_min, other->value_min);
+  own->value_max = other->value_max = std::max(own->value_max, other->value_max);
+  own->other = other;
+  return own;
+}
+
+std::uint64_t Playground::hash() const {
+  const std::uint64_t first = first_->simulation->hash();
+  if (!comparison_) return first;
+  Hash64 both;
+  both.add(first), both.add(comparison_->second->simulation->hash());
+  return both.value();
+}
+
+const Simulation* Playground::second_simulation() const {
+  return comparison_ ? &*comparison_->second->simulation : nullptr;
 }
 
 void Playground::tell(const std::string& what, bool is_error) {
   chosen().say(what, is_error);
   share_message();
 }
-bool Playground::is_filmed() const { return !impl_->films->file.empty(); }
-int Playground::threads() const { return impl_->simulation->threads(); }
-std::string Playground::isa() const { return impl_->simulation->isa(); }
-const Simulation& Playground::simulation() const { return *impl_->simulation; }
+bool Playground::is_filmed() const { return !first_->films->file.empty(); }
+int Playground::threads() const { return first_->simulation->threads(); }
+std::string Playground::isa() const { return first_->simulation->isa(); }
+const Simulation& Playground::simulation() const { return *first_->simulation; }
 
 }  // namespace dreampm::play

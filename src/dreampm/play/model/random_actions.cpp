@@ -3,20 +3,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "dreampm/math/rng.h"
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/stories.h"
-#include "dreampm/play/panels/panels.h"
-#include "dreampm/scene/description.h"
+#include "dreampm/play/tools/tool.h"
 
 namespace dreampm::play {
+namespace {
 
-double RandomActions::random(double low, double high) { return low + (high - low) * uniform(seed_, drawn_++); }
+/// Of the chances of tools, those of what is no tool's, and of settings.
+constexpr int chance_of_others = 5, chance_of_settings = 4;
+
+}  // namespace
+
+double RandomActions::number(double low, double high) { return low + (high - low) * uniform(seed_, drawn_++); }
 
 std::size_t RandomActions::index(std::size_t count) {
-  return std::min(static_cast<std::size_t>(random(0, static_cast<double>(count))), count - 1);
+  return std::min(static_cast<std::size_t>(number(0, static_cast<double>(count))), count - 1);
+}
+
+std::string RandomActions::place(const Frame& frame) {
+  const Vec3d low = frame.domain.min, size = frame.domain.size();
+  const double x = number(low.x, low.x + size.x), y = number(low.y, low.y + size.y), z = number(low.z, low.z + size.z);
+  return fmt::format("{} {} {}", x, y, z);
+}
+
+std::string RandomActions::length(const Frame& frame, double least, double most) {
+  const Vec3d size = frame.domain.size();
+  return " " + text_of(std::min({size.x, size.y, size.z}) * number(least, most));
+}
+
+std::string RandomActions::vector(double low, double high) {
+  const double x = number(low, high), y = number(low, high), z = number(low, high);
+  return fmt::format(" {} {} {}", x, y, z);
 }
 
 Action RandomActions::open() {
@@ -25,76 +45,40 @@ Action RandomActions::open() {
   return {"open", {"report", n == stories().size() ? "1" : "2"}};
 }
 
-Action RandomActions::next(const Frame& frame) {
-  const Vec3d low = frame.domain.min, size = frame.domain.size();
-  const double reach = std::min({size.x, size.y, size.z});
-  const auto place = [&] {
-    return fmt::format("{} {} {}", random(low.x, low.x + size.x), random(low.y, low.y + size.y),
-                       random(low.z, low.z + size.z));
-  };
-  const auto radius = [&](double least, double most) { return text_of(reach * random(least, most)); };
-  switch (index(24)) {
-    default: {
-      // A control; time stands still seldom.
-      const ControlInfo& c = (*frame.controls)[index(frame.controls->size())];
-      if (c.id == "paused") return {"set", {c.id, "0"}};
-      const double value = c.choices.empty() ? random(c.min, c.max) : static_cast<double>(index(c.choices.size()));
-      return {"set", {c.id, text_of(std::clamp(value, c.min, c.max))}};
-    }
+Action RandomActions::setting(const Frame& frame) {
+  // Time stands still seldom.
+  const ControlInfo& c = (*frame.controls)[index(frame.controls->size())];
+  if (c.id == "paused") return {"set", {c.id, "0"}};
+  const double value = c.choices.empty() ? number(c.min, c.max) : static_cast<double>(index(c.choices.size()));
+  return {"set", {c.id, text_of(std::clamp(value, c.min, c.max))}};
+}
+
+Action RandomActions::other(const Frame& frame) {
+  const Action step = index(4) == 0 ? Action{"restart", {}} : Action{"step", {}};
+  switch (index(chance_of_others)) {
     case 0:
-    case 1:
-      return Action::parse(
-          fmt::format("push {} {} {} {} {}", place(), radius(0.1, 0.4), random(-5, 5), random(-5, 5), random(-5, 5)));
-    case 2:
-      return Action::parse(fmt::format("grab {} {}", place(), radius(0.1, 0.3)));
-    case 3:
-      return Action::parse("pull " + place());
-    case 4:
-      return {"release", {}};
-    case 5:
-    case 6:
-      return Action::parse(fmt::format("pour {} {} {} {} {}", place(), radius(0.05, 0.2), random(-2, 2),
-                                       random(-4, -0.5), random(-2, 2)));
-    case 7:
-      return {"pour", {"off"}};
-    case 8: {
-      // Files take their time.
-      static constexpr std::string_view things[] = {"box", "sphere", "crate", "brick", "ball"};
-      return Action::parse(fmt::format("drop {} {} {}", things[index(std::size(things))], place(), radius(0.1, 0.4)));
-    }
-    case 9:
-      return Action::parse(fmt::format("erase {} {}", place(), radius(0.1, 0.5)));
-    case 10:
-      return Action::parse(
-          fmt::format("cut {} {} {} {} {}", place(), random(-1, 1), random(-1, 1), random(-1, 1), 2 * reach));
-    case 11:
-      return Action::parse(fmt::format("pin {} {}", place(), radius(0.05, 0.3)));
-    case 12:
-      return {"pin", {"off"}};
-    case 13:
-      return Action::parse(fmt::format("shake {} {} {}", random(-20, 20), random(-20, 20), random(-20, 20)));
-    case 14:
       return {"undo", {}};
-    case 15:
+    case 1:
       return {"redo", {}};
-    case 16:
-      return {"seek", {text_of(random(0, 3))}};
-    case 19: {
-      if (index(4) == 0) return {"wall", {"off"}};
-      const std::size_t side = index(6);
-      const int axis = static_cast<int>(side) / 2;
-      const double in = random(0, 0.6) * size[axis];
-      return {"wall", {scene::wall_names.at(side), text_of(side % 2 ? low[axis] + size[axis] - in : low[axis] + in)}};
-    }
-    case 18:
-      if (!frame.other)
-        return index(6) == 0 ? compare_with(static_cast<double>(index(matters().size() + 1))) : Action{"step", {}};
-      return {"compare", index(3) == 0   ? std::vector<std::string>{"off"}
-                         : index(2) == 0 ? std::vector<std::string>{"side", "A"}
-                                         : std::vector<std::string>{"side", "B"}};
-    case 17:
-      return index(4) == 0 ? Action{"restart", {}} : Action{"step", {}};
+    case 2:
+      return {"seek", {text_of(number(0, 3))}};
+    case 3:
+      return step;
+    default:
+      if (!frame.other) return index(6) == 0 ? compare_with(index(matters().size() + 1)) : step;
+      if (index(3) == 0) return {"compare", {"off"}};
+      return {"compare", {"side", index(2) == 0 ? "A" : "B"}};
   }
+}
+
+Action RandomActions::next(const Frame& frame) {
+  static const ToolSet tools;
+  int all = chance_of_others + chance_of_settings;
+  for (const auto& tool : tools) all += tool->info().chance;
+  int drawn = static_cast<int>(index(static_cast<std::size_t>(all)));
+  for (const auto& tool : tools)
+    if ((drawn -= tool->info().chance) < 0) return tool->random(*this, frame);
+  return drawn < chance_of_others ? other(frame) : setting(frame);
 }
 
 }  // namespace dreampm::play

@@ -1,6 +1,8 @@
-// Hands that do anything: for runs that look for what breaks a playground.
+// Actions by chance: for runs that look for what breaks a playground.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "dreampm/play/model/action.h"
 #include "dreampm/play/model/frame.h"
@@ -18,10 +20,21 @@ class RandomActions {
   /// Another stage: a story, or one of the report's presets.
   Action open();
 
- private:
-  double random(double low, double high);
+  // For tools.
+  double number(double low, double high);
   /// A whole number below `count`, which is 1 or more.
   std::size_t index(std::size_t count);
+  /// A place in the box.
+  std::string place(const Frame& frame);
+  /// A blank and a length: part of the shortest edge of the box.
+  std::string length(const Frame& frame, double least, double most);
+  /// Three numbers, each behind a blank.
+  std::string vector(double low, double high);
+
+ private:
+  /// What is no tool's.
+  Action other(const Frame& frame);
+  Action setting(const Frame& frame);
 
   std::uint64_t seed_, drawn_ = 0;
 };

@@ -8,7 +8,7 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/play/model/cell_means.h"
 #include "dreampm/play/model/live_range.h"
-#include "dreampm/play/model/playground_impl.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/scene/description.h"
 
@@ -114,11 +114,10 @@ void set_camera(const scene::SceneDescription& scene, bool report, Frame& frame)
       box.center() + Vec3d{std::cos(up) * std::cos(around), std::sin(up), std::cos(up) * std::sin(around)} * distance;
 }
 
-/// Walls that were dragged are drawn as planes.
-bool is_drawn(const scene::Collider& c) {
-  for (std::size_t side = 0; side < 6; ++side)
-    if (c.name == wall_name(side)) return false;
-  return !c.pin && !c.sequence;
+/// Tools draw theirs themselves.
+bool is_drawn(const scene::Collider& c, const ToolSet& tools) {
+  return !c.pin && !c.sequence &&
+         std::none_of(tools.begin(), tools.end(), [&](const auto& tool) { return tool->draws(c.name); });
 }
 
 BodyFrame body_of(const Simulation& simulation, const scene::Collider& c) {
@@ -133,10 +132,10 @@ BodyFrame body_of(const Simulation& simulation, const scene::Collider& c) {
 }
 
 /// Makes `bodies` those of the scene; those of a name that was there already stay as they were.
-void list_bodies(const Simulation& simulation, std::vector<BodyFrame>& bodies) {
+void list_bodies(const Simulation& simulation, const ToolSet& tools, std::vector<BodyFrame>& bodies) {
   const std::vector<BodyFrame> before = std::exchange(bodies, {});
   for (const scene::Collider& c : simulation.scene().description().colliders) {
-    if (!is_drawn(c)) continue;
+    if (!is_drawn(c, tools)) continue;
     const auto known = std::find_if(before.begin(), before.end(), [&](const BodyFrame& b) { return b.name == c.name; });
     bodies.push_back(known == before.end() ? body_of(simulation, c) : *known);
   }
@@ -144,19 +143,19 @@ void list_bodies(const Simulation& simulation, std::vector<BodyFrame>& bodies) {
 
 }  // namespace
 
-void Playground::Impl::see_new_matter() {
+void PlayModel::see_new_matter() {
   const double now = simulation->time();
   const std::uint32_t next = simulation->next_id();
-  if (seen_until == next) return;
+  if (arrivals.seen_until == next) return;
   for (const std::string& material : simulation->scene().materials())
     simulation->visit(material, {.position = false, .id = true},
-                      [&](const ParticleBatch& some) { ages.see(some.id, now); });
-  seen_until = next;
+                      [&](const ParticleBatch& some) { arrivals.ages.see(some.id, now); });
+  arrivals.seen_until = next;
 }
 
-void Playground::Impl::read(Frame& frame) {
+void PlayModel::read(Frame& frame) {
   const scene::SceneDescription& scene = simulation->scene().description();
-  frame.number = ticks, frame.actions = actions;
+  frame.number = clock.ticks, frame.actions = actions;
   frame.story = play_scene().name, frame.about = scene.about;
   frame.preset_file = play_scene().file, frame.presets = play_scene().presets, frame.preset = play_scene().preset;
   frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
@@ -171,41 +170,38 @@ void Playground::Impl::read(Frame& frame) {
     frame.matter[m].look = std::make_shared<const MatterLook>(looks.at(scene.materials[m].name));
   set_camera(scene, play_scene().report, frame);
   frame.value_label.clear(), frame.value_unit.clear();
-  const std::string& choice = color_choices()[static_cast<std::size_t>(settings.color_by)];
+  const std::string& choice = color_choices()[settings.color_by];
   const auto coloring =
       std::find_if(std::begin(colorings), std::end(colorings), [&](const Coloring& c) { return c.choice == choice; });
   // In slow motion a large step lasts for pictures on end. They show matter on its way through it,
   // at the velocity that took it.
   const bool is_slow = is_projection(scene) && simulation->dt() > asked_seconds();
-  const double ahead = is_slow ? std::clamp(owed - 0.5 * simulation->dt(), -meters.taken_dt, 0.0) : 0;
+  const double ahead = is_slow ? std::clamp(clock.owed - 0.5 * simulation->dt(), -meters.taken_dt, 0.0) : 0;
   if (coloring == std::end(colorings))
-    read_positions(*simulation, settings.random_colors != 0, ahead, frame);
+    read_positions(*simulation, settings.random_colors, ahead, frame);
   else
-    read_values(*simulation, *coloring, ages, ahead, frame);
-  list_bodies(*simulation, bodies);
+    read_values(*simulation, *coloring, arrivals.ages, ahead, frame);
+  list_bodies(*simulation, tools, bodies);
   frame.bodies = bodies;
   for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
-  frame.room = room();
-  frame.pins = pins();
-  for (std::size_t side = 0; side < 6; ++side)
-    if (std::optional<BodyFrame> plane = wall_plane(side)) frame.bodies.push_back(std::move(*plane));
+  frame.room = frame.domain, frame.marks.clear(), frame.buttons.clear();
+  for (const auto& tool : tools) tool->marks(*this, frame);
   frame.meters = meters, frame.settings = settings;
   frame.controls = controls;
   frame.values = asked_values();
   // They need not follow each picture.
-  if (live_of != controls || ticks >= live_at + 15) {
-    live = live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(mean_step_seconds),
-                       ticks_a_second * asked_seconds());
-    live_of = controls, live_at = ticks;
-  }
-  frame.live = live;
+  if (live.of != controls || clock.ticks >= live.at + 15)
+    live = {live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(cost.mean),
+                        ticks_a_second * asked_seconds()),
+            controls, clock.ticks};
+  frame.live = live.ranges;
   frame.facts = facts();
   frame.rendering = films->rendering ? std::make_shared<const RenderStatus>(films->rendering->look()) : nullptr;
   frame.film = films->file, frame.film_fps = films->fps;
-  frame.past = history.first() > 0 ? played - history.first() : 0;
-  frame.future = std::max(0.0, history.last() - played);
+  frame.past = history.first() > 0 ? clock.played - history.first() : 0;
+  frame.future = std::max(0.0, history.last() - clock.played);
   frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
-  frame.message = message, frame.message_is_error = message_is_error, frame.message_number = message_number;
+  frame.message = message.text, frame.message_is_error = message.is_error, frame.message_number = message.number;
   frame.lost = lost_text(losses.all);
 }
 

@@ -7,7 +7,7 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
-#include "dreampm/play/model/playground_impl.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/scene/description.h"
 
 namespace dreampm::play {
@@ -18,7 +18,7 @@ constexpr double longest_film = 600;
 
 }  // namespace
 
-void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as) {
+void PlayModel::save(const std::filesystem::path& file, const SavedAs& as) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
   if (!file.parent_path().empty()) make_folder(file.parent_path());
   check_replaceable(file);
@@ -42,8 +42,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   }
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
-  for (const auto& [name, hold] : pins_of(*simulation))  // they hold on
-    now.fields.push_back({{name, Brush{hold.point, hold.radius, hold.velocity, hold.rate}, std::nullopt}, {}});
+  for (const auto& tool : tools) tool->save(*simulation, now);
   if (as.finer)
     simulation->save_moment(moment, Scene(now, moment.string()));
   else
@@ -54,7 +53,7 @@ void Playground::Impl::save(const std::filesystem::path& file, const SavedAs& as
   if (!as.finer) say(fmt::format("saved {}: dreampm make runs it", std::filesystem::absolute(file).string()));
 }
 
-void Playground::Impl::render(const Action& action, bool goes_on) {
+void PlayModel::render(const Action& action, bool goes_on) {
   if (options.program.empty()) throw InputError(action.verb + ": no command dreampm that could make a film is known");
   if (films->rendering && films->rendering->look().state == RenderStatus::State::running)
     throw InputError(action.verb + ": a film is under way; render off ends it");

@@ -6,7 +6,7 @@
 
 #include "dreampm/error.h"
 #include "dreampm/play/model/action.h"
-#include "dreampm/play/model/playground_impl.h"
+#include "dreampm/play/model/play_model.h"
 #include "dreampm/play/model/size_chooser.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/scene/description.h"
@@ -23,7 +23,7 @@ constexpr double beginning = 0.3, measured = 1;
 /// Of real time: below this the machine does not keep up.
 constexpr double too_slow = 0.75;
 
-std::string number_text(const Playground::Impl& side) {
+std::string number_text(const PlayModel& side) {
   // Where taps give matter the number at the start says nothing.
   return side.play_scene().scene.description().emitters.empty()
              ? fmt::format("{} particles", grouped(side.simulation->particle_count()))
@@ -50,7 +50,7 @@ PlayScene resized(PlayScene stage, std::size_t size) {
 }
 
 void Playground::resize(std::size_t size) {
-  PlayScene next = resized(impl_->play_scene(), size);
+  PlayScene next = resized(first_->play_scene(), size);
   const auto before = std::exchange(size_, size);
   try {
     open(std::move(next));
@@ -58,17 +58,17 @@ void Playground::resize(std::size_t size) {
     size_ = before;
     throw;
   }
-  impl_->say(fmt::format("{}: {}", size_names().at(size), number_text(*impl_)));
+  first_->say(fmt::format("{}: {}", size_names().at(size), number_text(*first_)));
 }
 
 void Playground::choose_solver(SolverKind solver) {
-  if (impl_->play_scene().scene.description().time.solver == solver) return;
-  open(by_solver(impl_->play_scene(), solver));
-  impl_->say(fmt::format("{}: {}",
+  if (first_->play_scene().scene.description().time.solver == solver) return;
+  open(by_solver(first_->play_scene(), solver));
+  first_->say(fmt::format("{}: {}",
                          solver == SolverKind::projection
                              ? "large steps of liquids by a pressure projection, and of what lies in them"
                              : "explicit steps, of all matter",
-                         number_text(*impl_)));
+                         number_text(*first_)));
 }
 
 bool SizeChooser::wants_small(const Frame& frame, double now) {
@@ -79,7 +79,7 @@ bool SizeChooser::wants_small(const Frame& frame, double now) {
   // Whoever has begun to play keeps what is there, and whoever chose a size does.
   if (frame.can_undo || frame.size != medium_size || !frame.can_resize) done_ = true;
   if (done_) return false;
-  if (frame.settings.paused != 0 || frame.settings.speed < 1 || frame.other) {
+  if (frame.settings.paused || frame.settings.speed < 1 || frame.other) {
     began_ = now, from_ = -1;
     return false;
   }

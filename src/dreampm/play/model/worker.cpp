@@ -147,7 +147,7 @@ std::optional<int> Worker::replay(std::string& lines) {
 }
 
 void Worker::run() {
-  using Clock = std::chrono::steady_clock;
+  using WallClock = std::chrono::steady_clock;
   // A world that stands still is looked at more seldom.
   constexpr std::chrono::microseconds between{16667}, still_between{100000};
   std::string lines;
@@ -158,7 +158,7 @@ void Worker::run() {
   };
   try {
     while (true) {
-      const auto began = Clock::now();
+      const auto began = WallClock::now();
       std::deque<Action> actions;
       bool ends = false;
       {
@@ -191,7 +191,7 @@ void Worker::run() {
       std::shared_ptr<const Frame> frame = playground_.frame();
       std::unique_lock lock(mutex_);
       latest_ = std::move(frame);
-      const bool stands = steps == 0 && latest_->settings.paused != 0;
+      const bool stands = steps == 0 && latest_->settings.paused;
       wake_.wait_until(lock, began + (stands ? still_between : between),
                        [&] { return ends_ || ((steps == 0 || gave_way) && !posted_.empty()); });
     }

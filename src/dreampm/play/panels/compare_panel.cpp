@@ -8,15 +8,9 @@
 
 namespace dreampm::play {
 
-Action compare_with(double choice) {
-  Action action{"compare", {"on"}};
-  if (choice > 0) action.words.emplace_back(matters()[static_cast<std::size_t>(choice) - 1].name);
-  return action;
-}
-
 void Panels::compare_buttons(const Frame& frame) {
   controls_of(frame, "Compare");
-  const Action on = compare_with(asked(frame, "compare_with", frame.settings.compare_with));
+  const Action on = compare_with(static_cast<std::size_t>(asked(frame, "compare_with", static_cast<double>(frame.settings.compare_with))));
   if (ImGui::Button("Compare##start")) post_(on);
   note_place(on.text());
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("the same twice, under the same hands; key K");
@@ -39,7 +33,7 @@ void Panels::compare_labels(const Frame& frame, float width, float height) {
   const Layout l = layout(width, height);
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
   const float half = (width - l.left) / 2, bottom = height - l.bottom;
-  const bool dark = frame.settings.dark != 0;
+  const bool dark = frame.settings.dark;
   list.AddLine({l.left + half, 0}, {l.left + half, bottom}, color_of(dark ? Vec3f{1, 1, 1} : Vec3f{0, 0, 0}, 0.4f),
                2 * scale);
   for (const Frame* side : {&frame.side_a(), &frame.side_b()}) {

@@ -12,10 +12,21 @@
 
 #include "dreampm/gl/color_scale.h"
 #include "dreampm/play/model/playground.h"
+#include "dreampm/play/tools/tool.h"
 #include "dreampm/play/panels/imgui_text.h"
 #include "dreampm/play/panels/panels.h"
 
 namespace dreampm::play {
+
+namespace {
+
+std::string keys_of_tools() {
+  std::string keys;
+  for (const ToolInfo& tool : tool_buttons()) keys += fmt::format("{}{}", keys.empty() ? "" : " ", tool.key);
+  return keys;
+}
+
+}  // namespace
 
 const std::vector<KeyHelp>& key_help() {
   static const std::vector<KeyHelp> all{
@@ -25,7 +36,7 @@ const std::vector<KeyHelp>& key_help() {
       {"right drag, wheel", "shift the view, come nearer; with Shift a right drag turns it"},
       {"1 ... 0", "choose matter"},
       {"hold P", "pour it where the pointer is"},
-      {fmt::format("{}", fmt::join(tool_keys(), " ")), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},
+      {keys_of_tools(), fmt::format("tools: {}", fmt::join(tool_names(), ", "))},
       {"[ ]", "smaller, larger brush"},
       {"arrows", "shake the box"},
       {"K, X", "compare with another matter; the other side"},
@@ -95,10 +106,10 @@ void Panels::message(const Frame& frame, float width, float height) {
 void Panels::meters(const Frame& frame, const DrawingFacts& facts, float width, float height) {
   const Meters& m = frame.meters;
   const float room = width - layout(width, height).left - 20 * scale;
-  std::string line = frame.settings.paused != 0
+  std::string line = frame.settings.paused
                          ? fmt::format("paused at {:.2f} s", frame.time)
                          : fmt::format("{:.0f} % of real time", 100 * m.rate * frame.settings.speed);
-  if (facts.frames_a_second > 0 && frame.settings.paused == 0)
+  if (facts.frames_a_second > 0 && !frame.settings.paused)
     line += fmt::format(", {:.0f} pictures/s", facts.frames_a_second);
   if (frame.can_resize && (room > 420 * scale || frame.size != 1)) line += ", " + size_names().at(frame.size);
   // A window that takes the size of what is in it does so a picture later: a longer line would be
@@ -191,7 +202,7 @@ RoundLength round_length(double most) {
 }
 
 void Panels::scale_bar(const Frame& frame, const Cursor& pointer, float width, float height) {
-  if (frame.settings.scale_bar == 0) return;
+  if (!frame.settings.scale_bar) return;
   const Layout l = layout(width, height);
   const gl::Camera camera = pointer.seen_by();
   const Vec3d to_middle = frame.domain.center() - static_cast<Vec3d>(camera.eye);
@@ -204,7 +215,7 @@ void Panels::scale_bar(const Frame& frame, const Cursor& pointer, float width, f
   const auto long_ = static_cast<float>(length.meters * pixels);
   const ImVec2 from{l.left + 16 * scale, height - l.bottom - 14 * scale}, to{from.x + long_, from.y};
   ImDrawList& list = *ImGui::GetBackgroundDrawList();
-  const bool dark = frame.settings.dark != 0;
+  const bool dark = frame.settings.dark;
   // A line of the other lightness about it: it stands before anything.
   for (const bool about : {true, false}) {
     const ImU32 color = color_of(dark == about ? Vec3f{0.05f, 0.07f, 0.1f} : Vec3f{1, 1, 1}, about ? 0.6f : 1.0f);
@@ -227,12 +238,18 @@ namespace {
 
 /// What a beginner does not know, and the verb of who has done it.
 struct Hint {
-  const char* text;
-  std::string_view verb;
+  std::string_view text, verb;
 };
-constexpr std::array<Hint, 3> all_hints{{{"move the pointer through the matter to push it", "push"},
-                                         {"drag matter to grab it, drag elsewhere to turn the view", "grab"},
-                                         {"hold P to pour; F1 shows all keys", "pour"}}};
+std::vector<Hint> hints_of_tools() {
+  std::vector<Hint> all;
+  for (const ToolInfo& tool : tool_infos())
+    if (!tool.hint.empty()) all.push_back({tool.hint, tool.verbs.front().name});
+  return all;
+}
+const std::vector<Hint>& all_hints() {
+  static const std::vector<Hint> all = hints_of_tools();
+  return all;
+}
 /// s: how long one fades, and when those go that nobody follows.
 constexpr double fading = 1.5, longest_hint = 60;
 /// Pixels of the picture's width, below which hints come one at a time.
@@ -243,27 +260,29 @@ constexpr float beside_the_meters = 860;
 }  // namespace
 
 void Panels::note_use(std::string_view verb) {
-  for (std::size_t i = 0; i < all_hints.size(); ++i)
-    if (all_hints[i].verb == verb && hint_used_[i] < 0) hint_used_[i] = ImGui::GetTime();
+  for (const Hint& hint : all_hints())
+    if (hint.verb == verb) hint_used_.try_emplace(hint.text, ImGui::GetTime());
 }
 
 double Panels::moves_for() const {
   const double now = ImGui::GetTime();
   double until = now;
   if (!notes_.empty()) until = std::max(until, notes_.back().until);
-  for (const double used : hint_used_)
-    if (const double fades = used < 0 ? longest_hint : std::min(used, longest_hint); now >= fades)
-      until = std::max(until, fades + fading);
+  for (const Hint& hint : all_hints())
+    if (const double fades = fades_at(hint.text); now >= fades) until = std::max(until, fades + fading);
   return until - now;
+}
+
+double Panels::fades_at(std::string_view hint) const {
+  const auto used = hint_used_.find(hint);
+  return used == hint_used_.end() ? longest_hint : std::min(used->second, longest_hint);
 }
 
 void Panels::hints(float width, float height, float top) {
   const double now = ImGui::GetTime();
-  std::array<float, all_hints.size()> alpha{};
-  for (std::size_t i = 0; i < all_hints.size(); ++i) {
-    const double used = hint_used_[i] < 0 ? longest_hint : std::min(hint_used_[i], longest_hint);
-    alpha[i] = static_cast<float>(std::clamp((used + fading - now) / fading, 0.0, 1.0));
-  }
+  std::vector<float> alpha;
+  for (const Hint& hint : all_hints())
+    alpha.push_back(static_cast<float>(std::clamp((fades_at(hint.text) + fading - now) / fading, 0.0, 1.0)));
   const float most = *std::max_element(alpha.begin(), alpha.end());
   if (most <= 0) return;
   const Layout l = layout(width, height);
@@ -277,13 +296,13 @@ void Panels::hints(float width, float height, float top) {
   ImGui::Begin("hints", nullptr, overlay | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoBringToFrontOnFocus);
   ImGui::PushTextWrapPos(room - ImGui::GetStyle().WindowPadding.x);
   bool has_one = false;
-  for (std::size_t i = 0; i < all_hints.size(); ++i) {
+  for (std::size_t i = 0; i < alpha.size(); ++i) {
     if (alpha[i] <= 0) continue;
     // Where there is little room, one after the other.
     if (std::exchange(has_one, true) && room < one_at_a_time * scale) break;
     ImVec4 color = ImGui::GetStyleColorVec4(ImGuiCol_Text);
     color.w *= alpha[i];
-    ImGui::TextColored(color, "%s", all_hints[i].text);
+    ImGui::TextColored(color, "%s", std::string(all_hints()[i].text).c_str());
   }
   ImGui::PopTextWrapPos();
   ImGui::End();

@@ -11,6 +11,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/play/model/playground.h"
 #include "dreampm/play/model/solver_choice.h"
+#include "dreampm/play/tools/tool.h"
 #include "dreampm/play/panels/imgui_text.h"
 
 namespace dreampm::play {
@@ -107,7 +108,7 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   matter_buttons(frame);
   ImGui::Spacing();
   tool_buttons(frame);
-  pin_button(frame);
+  buttons_of_tools(frame);
   ImGui::Spacing();
   const auto section = [&](const std::string& name, bool open) {
     const bool is_open = ImGui::CollapsingHeader(name.c_str(), open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
@@ -143,11 +144,11 @@ void Panels::left_panel(const Frame& frame, float width, float height) {
   ImGui::End();
 }
 
-void Panels::pin_button(const Frame& frame) {
-  if (frame.pins.empty()) return;
-  if (ImGui::Button(fmt::format("let {} go##pins", frame.pins.size() == 1 ? "the pin" : "all pins").c_str()))
-    post("pin", {"off"});
-  note_place("pin off");
+void Panels::buttons_of_tools(const Frame& frame) {
+  for (const ToolButton& button : frame.buttons) {
+    if (ImGui::Button(fmt::format("{}##of_tool", button.text).c_str())) post_(button.action);
+    note_place(button.action.text());
+  }
 }
 
 void Panels::size_buttons(const Frame& frame) {
@@ -191,11 +192,11 @@ void Panels::solver_buttons(const Frame& frame) {
 
 void Panels::tool_buttons(const Frame& frame) {
   ImGui::TextUnformatted("Tool");
-  const double chosen = asked(frame, "tool", frame.settings.tool);
+  const auto chosen = static_cast<std::size_t>(asked(frame, "tool", static_cast<double>(frame.settings.tool)));
   const std::size_t count = tool_names().size();
   for (std::size_t t = 0; t < count; ++t) {
     if (t % 4 != 0) ImGui::SameLine();
-    const bool is_chosen = static_cast<std::size_t>(chosen) == t;
+    const bool is_chosen = chosen == t;
     if (is_chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
     const float width = (ImGui::GetWindowContentRegionMax().x - ImGui::GetWindowContentRegionMin().x -
                          3 * ImGui::GetStyle().ItemSpacing.x) /
@@ -204,7 +205,7 @@ void Panels::tool_buttons(const Frame& frame) {
       set("tool", static_cast<double>(t));
     note_place(fmt::format("set tool {}", t));
     if (is_chosen) ImGui::PopStyleColor();
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", tool_keys()[t]);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("key %c", play::tool_buttons()[t].key);
   }
 }
 

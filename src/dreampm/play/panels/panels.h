@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dreampm/play/model/frame.h"
@@ -92,8 +93,8 @@ class Panels {
   // strip.cpp: bottom_strip.
   void left_panel(const Frame& frame, float width, float height);
   void tool_buttons(const Frame& frame);
-  /// Lets pins go, where there are any.
-  void pin_button(const Frame& frame);
+  /// Those that tools have beside their own.
+  void buttons_of_tools(const Frame& frame);
   void gravity_ball(const Frame& frame);
   void compare_buttons(const Frame& frame);
   /// Whether the picture, or that of a side, is too small for all lines of the meters.
@@ -120,6 +121,7 @@ class Panels {
   void solver_buttons(const Frame& frame);
   /// `top`: below what else is at the upper left.
   void hints(float width, float height, float top);
+  double fades_at(std::string_view hint) const;  ///< s
   void help_page();
   // picture_buttons.cpp
   void matter_buttons(const Frame& frame);
@@ -177,7 +179,7 @@ class Panels {
     std::string file;   ///< the scene's
     float seconds = 3;  ///< of the film
   } render_dialog_;
-  std::array<double, 3> hint_used_{-1, -1, -1};  ///< s, when what a hint says was done; below 0: never
+  std::map<std::string_view, double> hint_used_;  ///< s, by the hint: when what it says was done
   bool was_by_keyboard_ = false;
   std::string put_away_;  ///< the scene of a film whose end was seen
   bool asks_to_close_ = false, closes_ = false;
@@ -187,9 +189,6 @@ class Panels {
   bool edits_ = false;       ///< whether the control at hand has changed matter or gravity
   bool new_stage_ = false;   ///< whether another was asked for: the camera goes to its place
 };
-
-/// What compares with the choice of the control `compare_with`.
-Action compare_with(double choice);
 
 /// A length that is easy to read.
 struct RoundLength {

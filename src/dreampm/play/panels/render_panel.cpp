@@ -36,7 +36,7 @@ std::string size_text(std::uint64_t bytes) {
 }  // namespace
 
 void Panels::open_render(const Frame& frame, const Cursor& pointer) {
-  render_dialog_.open = true, render_dialog_.was_paused = frame.settings.paused != 0;
+  render_dialog_.open = true, render_dialog_.was_paused = frame.settings.paused;
   render_dialog_.file = free_name(without_blanks(frame.story) + "-film", ".yaml").string();
   // What is seen now is what the film begins with.
   set("paused", 1);
@@ -46,7 +46,7 @@ void Panels::open_render(const Frame& frame, const Cursor& pointer) {
 void Panels::estimate(const Cursor& pointer) { post("estimate", render_words(pointer)); }
 
 std::vector<std::string> Panels::render_words(const Cursor& pointer) const {
-  const gl::Camera& camera = pointer.camera;
+  const gl::Camera& camera = pointer.camera();
   std::vector<std::string> words{render_dialog_.file};
   const auto number = [&](float value) { words.push_back(text_of(static_cast<double>(value))); };
   number(render_dialog_.seconds);

@@ -104,7 +104,7 @@ App::~App() = default;
 void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
   Impl& a = *impl_;
   ImGuiIO& io = ImGui::GetIO();
-  const bool dark = frame.settings.dark != 0;
+  const bool dark = frame.settings.dark;
   if (scale != a.scale || dark != a.dark) {
     set_style(a.dark = dark);
     ImGui::GetStyle().ScaleAllSizes(a.scale = a.panels.scale = scale);

@@ -8,6 +8,8 @@
 #include "dreampm/play/model/open_file.h"
 #include "dreampm/play/model/playground.h"
 #include "dreampm/play/model/solver_choice.h"
+#include "dreampm/play/tools/drop.h"
+#include "dreampm/play/tools/tool.h"
 #include "dreampm/play/window/app_impl.h"
 
 namespace dreampm::play {
@@ -101,8 +103,8 @@ void App::Impl::keys(const Frame& frame, const Input& input) {
   for (const int key : input.pressed) {
     for (std::size_t kind = 0; kind < matters().size(); ++kind)
       if (key == matters()[kind].key) panels.choose_matter(frame, kind);
-    for (std::size_t tool = 0; tool < tool_keys().size(); ++tool)
-      if (!input.control && key == tool_keys()[tool]) set("tool", static_cast<double>(tool));
+    for (std::size_t tool = 0; tool < tool_buttons().size(); ++tool)
+      if (!input.control && key == tool_buttons()[tool].key) set("tool", static_cast<double>(tool));
     press(key, false);
   }
 }

@@ -17,7 +17,7 @@ bool PicturePace::shows_the_same(const Frame& frame) const {
 
 bool PicturePace::is_due(const Frame& frame, double now, bool touched, double until) {
   if (touched) touched_ = now;
-  const bool stands = frame.settings.paused != 0;
+  const bool stands = frame.settings.paused;
   if (frame.number != seen_ && !stands) {
     seen_ = frame.number;
     rate_ += 0.1 * (frame.meters.rate - rate_);

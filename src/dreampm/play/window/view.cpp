@@ -53,15 +53,15 @@ Vec3f color_of(const MatterLook& look) {
   return {0.9f * std::exp(-a.x * breadth), 0.9f * std::exp(-a.y * breadth), 0.95f * std::exp(-a.z * breadth)};
 }
 
-/// A level circle about each pin, and a cross in it.
-std::vector<gl::LineSegment> marks_of(std::span<const PinFrame> pins) {
+/// A level circle about each place, and a cross in it.
+std::vector<gl::LineSegment> lines_of(std::span<const PlaceMark> marks) {
   constexpr int sides = 32;
   const Vec3f color{0.9f, 0.25f, 0.2f};
   std::vector<gl::LineSegment> lines;
-  for (const PinFrame& pin : pins) {
+  for (const PlaceMark& mark : marks) {
     const auto at = [&](int n) {
       const float angle = 2 * std::numbers::pi_v<float> * static_cast<float>(n) / sides;
-      return pin.at + Vec3f{std::cos(angle), 0, std::sin(angle)} * pin.radius;
+      return mark.at + Vec3f{std::cos(angle), 0, std::sin(angle)} * mark.radius;
     };
     for (int n = 0; n < sides; ++n) lines.push_back({at(n), at(n + 1), color});
     for (const int n : {0, sides / 4}) lines.push_back({at(n), at(n + sides / 2), color});
@@ -70,13 +70,6 @@ std::vector<gl::LineSegment> marks_of(std::span<const PinFrame> pins) {
 }
 
 }  // namespace
-
-gl::Camera camera_of(const Frame& frame) {
-  gl::Camera camera;
-  camera.eye = static_cast<Vec3f>(frame.eye), camera.target = static_cast<Vec3f>(frame.target);
-  camera.view_angle = static_cast<float>(frame.view_angle);
-  return camera;
-}
 
 void View::draw(const Frame& frame, const gl::Camera& camera, const std::optional<CursorMark>& hand,
                 const gl::Framebuffer& framebuffer) {
@@ -124,12 +117,12 @@ void View::draw(const Frame& frame, const gl::Camera& camera, const std::optiona
   }
   picture.particles = batches, picture.meshes = meshes;
   picture.domain = {static_cast<Vec3f>(frame.domain.min), static_cast<Vec3f>(frame.domain.max)};
-  picture.outline = frame.settings.outline != 0;
+  picture.outline = frame.settings.outline;
   picture.floor.height = picture.domain.min.y;
   picture.lights = gl::lights_for(picture.domain);
-  picture.theme = frame.settings.dark != 0 ? gl::dark_theme() : gl::light_theme();
-  const std::vector<gl::LineSegment> pins = marks_of(frame.pins);
-  picture.segments = pins;
+  picture.theme = frame.settings.dark ? gl::dark_theme() : gl::light_theme();
+  const std::vector<gl::LineSegment> marks = lines_of(frame.marks);
+  picture.segments = marks;
   if (hand) picture.ring = {hand->center, hand->normal, hand->radius};
   load_ = static_cast<double>(framebuffer.width()) * framebuffer.height() +
           pixels_of_particle * static_cast<double>(frame.particles);

@@ -8,17 +8,9 @@
 
 #include "dreampm/gl/renderer.h"
 #include "dreampm/play/model/frame.h"
+#include "dreampm/play/tools/gesture.h"
 
 namespace dreampm::play {
-
-/// Where a scene's own camera stands.
-gl::Camera camera_of(const Frame& frame);
-
-/// What the hand shows in the picture.
-struct CursorMark {
-  Vec3f center, normal;
-  float radius;
-};
 
 /// Which of some looks, from the best to the quickest, is drawn in time.
 class LookLadder {

@@ -230,7 +230,7 @@ void show(Window& window, Worker& worker, App& app) {
       pace.drew(*frame, inputs.back().time);
       if (app.wants_picture()) save_picture(app);
     } else {
-      window.wait(frame->settings.paused != 0 ? look_every : 0.004);
+      window.wait(frame->settings.paused ? look_every : 0.004);
     }
   }
 }
