@@ -16,7 +16,7 @@ namespace {
 struct PlayArguments {
   std::string what = "dam-break", record, script, screenshots, size, particles;
   int preset = 1, frames = 60, every = 1, threads = 0;
-  std::optional<std::uint64_t> random_hands;
+  std::optional<std::uint64_t> random_actions;
   std::optional<float> ui_scale;
   bool headless = false, no_panels = false, list = false, verbs = false;
 };
@@ -70,7 +70,7 @@ int play(const PlayArguments& args) {
                                                    dreampm::play::size_names().begin()));
   const std::uint64_t hash = dreampm::play::play_headless(
       std::move(stage), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
-                         !args.no_panels, args.random_hands});
+                         !args.no_panels, args.random_actions});
   fmt::print("hash {:016x}\n", hash);
   return 0;
 }
@@ -111,7 +111,7 @@ void add_play(CLI::App& app, Action& action) {
       ->transform(whole_number(1, 1000000));
   verb->add_flag("--no-panels", args->no_panels, "pictures and films of the whole window, without panels")
       ->needs(headless);
-  verb->add_option("--random", args->random_hands,
+  verb->add_option("--random", args->random_actions,
                    "seed of hands that do anything after the script, to look for what breaks; with --headless")
       ->needs(headless)
       ->transform(whole_number(0));

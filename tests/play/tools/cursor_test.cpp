@@ -126,7 +126,7 @@ TEST(Cursor, EachToolDoesWhatItSays) {
 TEST(Cursor, AJetStaysWhereThePointerIsWhileItFalls) {
   Hand hand;
   hand.move_to({0.2, 0.02, 0.18});
-  hand.pointer.hold_pour(*hand.frame(), true);
+  hand.pointer.hold("pour", true);
   const auto jet = [&] {
     for (auto a = hand.posted.rbegin(); a != hand.posted.rend(); ++a)
       if (a->verb == "pour" && a->words.size() > 1) return Vec3d{a->number(0), a->number(1), a->number(2)};
@@ -140,7 +140,7 @@ TEST(Cursor, AJetStaysWhereThePointerIsWhileItFalls) {
   EXPECT_LT(length(jet() - first), 0.01) << "the stream itself is not aimed at";
   hand.move_to({0.3, 0.02, 0.1});
   EXPECT_GT(length(jet() - first), 0.08);
-  hand.pointer.hold_pour(*hand.frame(), false);
+  hand.pointer.hold("pour", false);
   EXPECT_EQ(hand.posted.back().words, std::vector<std::string>{"off"});
 }
 

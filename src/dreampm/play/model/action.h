@@ -1,4 +1,4 @@
-// One thing that a hand does in the playground: a line of a script.
+// One thing that is done in the playground: a line of a script.
 #pragma once
 #include <cstdint>
 #include <string>

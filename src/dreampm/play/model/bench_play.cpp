@@ -47,7 +47,7 @@ double rate_of(Playground& p, double seconds, double& angle) {
   std::uint64_t done = 0;
   double taken = 0;
   while (taken < seconds) {
-    // A hand that stirs.
+    // A stroke that stirs.
     angle += 0.1;
     p.act({"push",
            {text_of(0.3 + 0.2 * std::cos(angle)), "0.1", text_of(0.3 + 0.2 * std::sin(angle)), "0.1",

@@ -1,4 +1,4 @@
-// A and B: the same stage twice, with the same hands and different materials.
+// A and B: the same scene twice, under the same tools, with different materials.
 #include <algorithm>
 #include <string>
 

@@ -91,7 +91,8 @@ const std::vector<SettingControl>& setting_controls() {
           .help("simulated seconds a second; slower shows more, and changes nothing else"),
       Row(&S::cfl, "Time", "cfl", "Cells in a step")
           .range(least_cfl, largest_projection_cfl, "")
-          .help("that most matter crosses in a large step: 1 keeps more of a splash, 3 is faster; small ones show more"),
+          .help(
+              "that most matter crosses in a large step: 1 keeps more of a splash, 3 is faster; small ones show more"),
       Row(&S::time_step, "Report", "time_step", "Time Step")
           .range(0, 4, "x 1e-4 s")
           .help("asked for each of the 25 substeps of a drawn frame; what is taken is what the matter can take"),

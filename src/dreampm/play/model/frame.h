@@ -115,11 +115,11 @@ struct Frame {
   Meters meters;
   Settings settings;
   std::shared_ptr<const std::vector<ControlInfo>> controls;
-  std::vector<double> values;      ///< of the controls
-  std::vector<LiveRange> live;     ///< of the controls
-  std::vector<std::string> facts;  ///< what the materials come to: E, nu, sound, viscosity
-  std::vector<PlaceMark> marks;       ///< of tools
-  std::vector<ToolButton> buttons;    ///< of tools
+  std::vector<double> values;                     ///< of the controls
+  std::vector<LiveRange> live;                    ///< of the controls
+  std::vector<std::string> facts;                 ///< what the materials come to: E, nu, sound, viscosity
+  std::vector<PlaceMark> marks;                   ///< of tools
+  std::vector<ToolButton> buttons;                ///< of tools
   std::string preset_file;                        ///< of the report: the config, and its presets
   std::vector<std::string> presets;               ///< names
   std::size_t preset = 0;                         ///< which of them is played

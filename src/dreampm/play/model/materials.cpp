@@ -317,8 +317,8 @@ void PlayModel::approach_targets() {
 }
 
 std::string PlayModel::ensure_matter(std::size_t kind) {
-  if (const auto& own = compared.stand_in; own && matters()[kind].name == compared.stand_in_for &&
-                                           !other_liquid(simulation->scene().description(), *own))
+  if (const auto& own = compared.stand_in;
+      own && matters()[kind].name == compared.stand_in_for && !other_liquid(simulation->scene().description(), *own))
     kind = *own;
   const Matter& matter = matters()[kind];
   const std::vector<std::string> names = simulation->scene().materials();

@@ -5,8 +5,8 @@
 #include <span>
 #include <string_view>
 
-#include "dreampm/vec.h"
 #include "dreampm/play/model/action.h"
+#include "dreampm/vec.h"
 
 namespace dreampm::play {
 

@@ -119,24 +119,13 @@ auto fields_of(State& state) {
   using namespace play_use;
   auto& [settings, clock, targets, looks, gravity, tools, losses, arrivals, compared, meters, cost, message] = state;
   auto& [played, owed, jumped, single_step, restart_is_due, failures, ticks] = clock;
-  return std::tuple{play_field<stays>(settings),
-                    play_field<found>(played),
-                    play_field<of_tick>(owed),
-                    play_field<stays>(jumped),
-                    play_field<of_scene>(single_step),
-                    play_field<of_scene>(restart_is_due),
-                    play_field<of_scene>(failures),
-                    play_field<stays>(ticks),
-                    play_field<under_way>(targets),
-                    play_field<of_scene>(looks),
-                    play_field<found>(gravity),
-                    play_field<of_scene>(tools),
-                    play_field<of_scene>(losses),
-                    play_field<of_scene>(arrivals),
-                    play_field<stays>(compared),
-                    play_field<stays>(meters),
-                    play_field<stays>(cost),
-                    play_field<stays>(message)};
+  return std::tuple{
+      play_field<stays>(settings),    play_field<found>(played),         play_field<of_tick>(owed),
+      play_field<stays>(jumped),      play_field<of_scene>(single_step), play_field<of_scene>(restart_is_due),
+      play_field<of_scene>(failures), play_field<stays>(ticks),          play_field<under_way>(targets),
+      play_field<of_scene>(looks),    play_field<found>(gravity),        play_field<of_scene>(tools),
+      play_field<of_scene>(losses),   play_field<of_scene>(arrivals),    play_field<stays>(compared),
+      play_field<stays>(meters),      play_field<stays>(cost),           play_field<stays>(message)};
 }
 
 /// Makes the members that begin anew then what they are at first.

@@ -1,4 +1,4 @@
-// The playground without its window: a simulation, what hands do to it, and its past.
+// The playground without its window: a simulation, what tools do to it, and its past.
 //
 // Deterministic: the same actions between the same ticks give the same bits, whatever the machine's
 // speed.
@@ -83,7 +83,7 @@ class Playground {
   void choose_solver(SolverKind solver);
   /// Starts a second side as a copy of the first. There that kind of matter, an index into
   /// matters(), takes the place of the one of which there is most; without one the materials are
-  /// the same, each with its own parameters. What hands do goes to both sides from then on, but for
+  /// the same, each with its own parameters. What tools do goes to both sides from then on, but for
   /// parameters of materials, which go to the chosen side. The past begins anew, until the
   /// comparison ends. Throws InputError.
   void compare(std::optional<std::size_t> kind);

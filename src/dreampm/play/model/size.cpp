@@ -65,10 +65,10 @@ void Playground::choose_solver(SolverKind solver) {
   if (first_->play_scene().scene.description().time.solver == solver) return;
   open(by_solver(first_->play_scene(), solver));
   first_->say(fmt::format("{}: {}",
-                         solver == SolverKind::projection
-                             ? "large steps of liquids by a pressure projection, and of what lies in them"
-                             : "explicit steps, of all matter",
-                         number_text(*first_)));
+                          solver == SolverKind::projection
+                              ? "large steps of liquids by a pressure projection, and of what lies in them"
+                              : "explicit steps, of all matter",
+                          number_text(*first_)));
 }
 
 bool SizeChooser::wants_small(const Frame& frame, double now) {

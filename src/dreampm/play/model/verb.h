@@ -16,6 +16,7 @@ struct Verb {
   void (*run)(PlayModel& side, const Action& action);
   void (*run_whole)(Playground& playground, const Action& action) = nullptr;
   bool recorded = true;  ///< whether a script of what happened has it: false where it leaves the world as it is
+  bool passes = false;   ///< a cursor that only moves does it: a record that is played again goes on over it
   /// Whether `run` acts on the chosen side alone while materials are compared; null: on both.
   bool (*of_one_side)(const Action& action) = nullptr;
   /// Throws InputError where it cannot be done; asked of both sides before either acts.
@@ -25,6 +26,11 @@ struct Verb {
   Verb unrecorded() const {
     Verb verb = *this;
     verb.recorded = false;
+    return verb;
+  }
+  Verb by_passing() const {
+    Verb verb = *this;
+    verb.passes = true;
     return verb;
   }
   Verb on_one_side(bool (*when)(const Action& action)) const {

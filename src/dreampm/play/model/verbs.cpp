@@ -1,4 +1,4 @@
-// What scripts and hands can do, one entry a verb.
+// What scripts and tools can do, one entry a verb; those of tools stand with the tools.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -132,8 +132,9 @@ std::vector<Verb> verbs_of_time_and_matter() {
       Verb{"undo", "", "takes the last edit back", undo}.checked_by(can_undo),
       Verb{"redo", "", "does again what was taken back", redo}.checked_by(can_redo),
       {"seek", "SECONDS", "goes to the moment that many seconds before the latest one", seek},
-      {"done", "", "ends an edit: what is set next is taken back by itself",
-       [](PlayModel& p, const Action&) { p.history.separate(); }},
+      Verb{"done", "", "ends an edit: what is set next is taken back by itself",
+           [](PlayModel& p, const Action&) { p.history.separate(); }}
+          .by_passing(),
   };
 }
 

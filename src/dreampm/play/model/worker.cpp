@@ -31,6 +31,10 @@ PlayOptions with_host(PlayOptions options, Host& host) {
   return options;
 }
 
+bool passes(const Action& action) {
+  return std::any_of(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == action.verb && v.passes; });
+}
+
 bool is_recorded(const Action& action) {
   return std::none_of(verbs().begin(), verbs().end(),
                       [&](const Verb& v) { return v.name == action.verb && !v.recorded; });
@@ -99,7 +103,7 @@ void Worker::do_posted(const std::deque<Action>& actions, std::string& lines) {
     }
     // Of a record that goes on, what a pointer pushes that only passes is left out.
     if (!script_.empty() && is_recorded(action)) {
-      if (action.verb == "push" || action.verb == "release" || action.verb == "done") continue;
+      if (passes(action)) continue;
       script_.clear();
       playground_.tell("the record ends here: a hand goes on");
     }
@@ -177,7 +181,7 @@ void Worker::run() {
       }
       write();  // also where this tick fails
       const bool acted = !actions.empty();
-      // What a hand does next ends the tick under way: its picture is not that much later.
+      // What the user does next ends the tick under way: its picture is not that much later.
       bool gave_way = false;
       Playground::Limit limit{counted,
                               longest_tick,

@@ -19,8 +19,8 @@ namespace dreampm::play {
 
 class Worker {
  public:
-  /// Wall clock of a tick [s], that a picture of what hands do is not too late: of one that shows
-  /// what they just did, and of others. Either ends where something waits to be done.
+  /// Wall clock of a tick [s], that a picture of what the user does is not too late: of one that
+  /// shows what they just did, and of others. Either ends where something waits to be done.
   static constexpr double drawn_frame = 1.0 / 60, longest_tick = 0.03;
 
   /// Takes lines of the script of all that happens (`dreampm play --script`), on the worker's
@@ -32,7 +32,7 @@ class Worker {
   Worker(PlayScene stage, const PlayOptions& options, Record record = {});
   ~Worker();
 
-  /// The verb `replay FILE` plays a record again, until a hand does something.
+  /// The verb `replay FILE` plays a record again, until the user does something.
   /// To be done before the next tick, in the order of the calls; its number, counted from 1.
   std::uint64_t post(Action action);
   /// What it looked like after the last tick. Never null.
@@ -46,7 +46,7 @@ class Worker {
 
  private:
   void run();
-  /// Does what was posted; a hand ends a record that is played again.
+  /// Does what was posted; what tools do ends a record that is played again.
   void do_posted(const std::deque<Action>& actions, std::string& lines);
   void act(const Action& action, std::string& lines);
   /// Begins to play a record again; says where it cannot.

@@ -24,7 +24,8 @@ constexpr ReportLook diy_looks[] = {
 std::span<const ReportLook> report_looks() { return diy_looks; }
 
 const ReportLook& report_look(std::string_view name) {
-  const auto look = std::find_if(std::begin(diy_looks), std::end(diy_looks), [&](const ReportLook& l) { return l.name == name; });
+  const auto look =
+      std::find_if(std::begin(diy_looks), std::end(diy_looks), [&](const ReportLook& l) { return l.name == name; });
   if (look != std::end(diy_looks)) return *look;
   std::string names;
   for (const ReportLook& l : diy_looks) names += fmt::format("{}{}", names.empty() ? "" : ", ", l.name);

@@ -83,16 +83,16 @@ void Cursor::release(Button button) {
 
 void Cursor::wheel(double clicks) { gesture_.camera.zoom(static_cast<float>(std::pow(0.9, clicks))); }
 
-void Cursor::hold_pour(const Frame&, bool held) {
-  if (held == (held_ != nullptr)) return;
+void Cursor::hold(std::string_view tool, bool held) {
+  Tool* const own = tools_.find(tool);
+  if (held == (held_ == own)) return;
   end_hover();
-  Tool* const pour = tools_.find("pour");
-  if (held && !gesture_.hit) missed_ = pour->info().name;
-  held_ = held ? pour : nullptr;
+  if (held && !gesture_.hit) missed_ = own->info().name;
+  held_ = held ? own : nullptr;
   if (held)
-    pour->press(gesture_);
+    own->press(gesture_);
   else
-    pour->release(gesture_);
+    own->release(gesture_);
 }
 
 }  // namespace dreampm::play

@@ -37,8 +37,8 @@ class Cursor {
   void press(const Frame& frame, Button button, bool shift = false);
   void release(Button button);
   void wheel(double clicks);
-  /// While held, matter is poured where the cursor is, whatever tool is chosen.
-  void hold_pour(const Frame& frame, bool held);
+  /// A key is held: that tool works where the cursor is, whatever tool is chosen.
+  void hold(std::string_view tool, bool held);
 
   /// The tool that was clicked with where there was nothing for it, since the last call; else
   /// empty.

@@ -1,5 +1,5 @@
-// Cut: takes out a thin disc, so that what a stroke crosses is in two. It parts matter by a gap, for
-// what is nearer than a cell holds together.
+// Cut: takes out a thin disc, so that what a stroke crosses is in two. It parts matter by a gap,
+// for what is nearer than a cell holds together.
 #include <fmt/format.h>
 
 #include "dreampm/error.h"
@@ -13,12 +13,12 @@ namespace {
 class Cut final : public ToolOf<Cut> {
  public:
   static ToolInfo about() {
-    return {.name = "cut",
-            .key = 'C',
-            .verbs = {tool_verb<Cut, &Cut::cut>(
-                "cut", "X Y Z NX NY NZ RADIUS",
-                "takes out a thin disc of that normal: what it went through is in two")},
-            .chance = 1};
+    return {
+        .name = "cut",
+        .key = 'C',
+        .verbs = {tool_verb<Cut, &Cut::cut>("cut", "X Y Z NX NY NZ RADIUS",
+                                            "takes out a thin disc of that normal: what it went through is in two")},
+        .chance = 1};
   }
 
   void release(Gesture& g) override {

@@ -150,6 +150,10 @@ Vec3d above(const Hit& hit, const Box3d& domain, double size, double spacing) {
   return clamped({hit.at.x, domain.min.y + 0.75 * domain.size().y, hit.at.z}, domain, 0.55 * size + spacing);
 }
 
+Action drop_file(const std::string& file, const Vec3d& at, double size) {
+  return {"drop", {file, text_of(at.x), text_of(at.y), text_of(at.z), text_of(size)}};
+}
+
 const std::vector<std::string>& drop_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;

@@ -14,8 +14,8 @@ class Erase final : public ToolOf<Erase> {
     return {.name = "erase",
             .key = 'E',
             .needs_matter = true,
-            .verbs = {tool_verb<Erase, &Erase::erase>(
-                "erase", "X Y Z RADIUS", "takes out the matter around, and the rigid body at that place")},
+            .verbs = {tool_verb<Erase, &Erase::erase>("erase", "X Y Z RADIUS",
+                                                      "takes out the matter around, and the rigid body at that place")},
             .chance = 1};
   }
 

@@ -1,10 +1,11 @@
 // Grab: takes hold of matter, which a brush draws to the cursor, or of a rigid body, which a spring
 // does.
+#include <algorithm>
 #include <cmath>
 
 #include "dreampm/play/model/random_actions.h"
 #include "dreampm/play/tools/arguments.h"
-#include "dreampm/play/tools/pick_drag.h"
+#include "dreampm/play/tools/grab.h"
 #include "dreampm/play/tools/tool.h"
 
 namespace dreampm::play {
@@ -18,13 +19,10 @@ class Grab final : public ToolOf<Grab> {
             .hint = "drag matter to grab it, drag elsewhere to turn the view",
             .needs_matter = true,
             .verbs = {tool_verb<Grab, &Grab::begin>(
-                          "grab", "X Y Z RADIUS", "takes hold of the rigid body or the matter at that place, until release"),
+                          "grab", "X Y Z RADIUS",
+                          "takes hold of the rigid body or the matter at that place, until release"),
                       tool_verb<Grab, &Grab::update>("pull", "X Y Z", "draws what is held to that place"),
-                      {"release", "", "ends push and grab",
-                       [](PlayModel& side, const Action&) {
-                         for (const auto& tool : side.tools) tool->release(side);
-                         if (side.history.last_edit() != "push") side.history.separate();
-                       }}},
+                      Verb{"release", "", "ends push and grab", &Grab::end_all}.by_passing()},
             .chance = 3};
   }
 
@@ -40,6 +38,12 @@ class Grab final : public ToolOf<Grab> {
     pick_ = PickConstraint{at, at, radius, body_at(side, at), {}};
     if (holds_body()) pick_->at = side.simulation->collider(pick_->body).pose.inverse(at);
   }
+  static void end_all(PlayModel& side, const Action&) {
+    for (const auto& tool : side.tools) tool->end(side);
+    const std::string& edit = side.history.last_edit();
+    if (std::none_of(side.tools.begin(), side.tools.end(), [&](const auto& tool) { return tool->goes_on(edit); }))
+      side.history.separate();
+  }
   void update(PlayModel& side, const Action& a) {
     if (pick_) pick_->target = place_at(side, a, 0);
   }
@@ -53,7 +57,7 @@ class Grab final : public ToolOf<Grab> {
     pick_->middle += velocity * seconds;
     if (holds_body()) hold(side);
   }
-  void release(PlayModel& side) override { reset(side); }
+  void end(PlayModel& side) override { reset(side); }
   void reset(PlayModel& side) override {
     pick_.reset();
     side.simulation->lift_brush("grab");
@@ -105,6 +109,13 @@ class Grab final : public ToolOf<Grab> {
 };
 
 }  // namespace
+
+void begin_pick(Gesture& g) { g.post("grab", {g.hit->at.x, g.hit->at.y, g.hit->at.z, g.settings.radius}); }
+void update_pick(Gesture& g) {
+  const Vec3d to = clamped(g.on_drag_plane(), g.domain, g.spacing);
+  g.post("pull", {to.x, to.y, to.z});
+}
+void end_pick(Gesture& g) { g.post("release"); }
 
 std::unique_ptr<Tool> make_grab() { return std::make_unique<Grab>(); }
 

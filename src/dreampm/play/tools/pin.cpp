@@ -65,7 +65,8 @@ class Pin final : public ToolOf<Pin> {
     const Pins all = pins_of(*side.simulation);
     for (const auto& [name, stroke] : all)
       frame.marks.push_back({static_cast<Vec3f>(stroke.point), static_cast<float>(stroke.radius)});
-    if (!all.empty()) frame.buttons.push_back({all.size() == 1 ? "let the pin go" : "let all pins go", {"pin", {"off"}}});
+    if (!all.empty())
+      frame.buttons.push_back({all.size() == 1 ? "let the pin go" : "let all pins go", {"pin", {"off"}}});
   }
 
   Action random(RandomActions& dice, const Frame& frame) const override {

@@ -21,10 +21,10 @@ class Pour final : public ToolOf<Pour> {
   static ToolInfo about() {
     return {.name = "pour",
             .key = 'O',
+            .held_key = 'P',
             .hint = "hold P to pour; F1 shows all keys",
-            .verbs = {tool_verb<Pour, &Pour::pour>(
-                "pour", "X Y Z RADIUS VX VY VZ | off",
-                "a jet of the chosen matter, three spacings in radius at least")},
+            .verbs = {tool_verb<Pour, &Pour::pour>("pour", "X Y Z RADIUS VX VY VZ | off",
+                                                   "a jet of the chosen matter, three spacings in radius at least")},
             .chance = 3};
   }
 

@@ -4,7 +4,7 @@
 
 #include "dreampm/play/model/random_actions.h"
 #include "dreampm/play/tools/arguments.h"
-#include "dreampm/play/tools/pick_drag.h"
+#include "dreampm/play/tools/grab.h"
 #include "dreampm/play/tools/tool.h"
 #include "dreampm/queries.h"
 
@@ -19,8 +19,9 @@ class Push final : public ToolOf<Push> {
             .hint = "move the pointer through the matter to push it",
             .needs_matter = true,
             .verbs = {tool_verb<Push, &Push::push>(
-                "push", "X Y Z RADIUS VX VY VZ",
-                "matter and rigid bodies at that place are taken along at that velocity, until release")},
+                          "push", "X Y Z RADIUS VX VY VZ",
+                          "matter and rigid bodies at that place are taken along at that velocity, until release")
+                          .by_passing()},
             .chance = 2};
   }
 
@@ -74,12 +75,13 @@ class Push final : public ToolOf<Push> {
       // As the brush does to matter: the velocity there comes to that of the stroke, at that rate.
       const ColliderState body = side.simulation->collider(name);
       const double own_rate = rate * side.settings.strength;
-      side.simulation->hold(
-          name, {body.pose.inverse(stroke_->point), stroke_->point + stroke_->velocity * (1 / own_rate),
-                 body.mass * own_rate * own_rate, body.mass * own_rate});
+      side.simulation->hold(name,
+                            {body.pose.inverse(stroke_->point), stroke_->point + stroke_->velocity * (1 / own_rate),
+                             body.mass * own_rate * own_rate, body.mass * own_rate});
     }
   }
-  void release(PlayModel& side) override { reset(side); }
+  void end(PlayModel& side) override { reset(side); }
+  bool goes_on(std::string_view edit) const override { return edit == "push"; }
   void reset(PlayModel& side) override {
     stroke_.reset();
     side.simulation->lift_brush("push");

@@ -11,10 +11,10 @@ namespace {
 class Shake final : public ToolOf<Shake> {
  public:
   static ToolInfo about() {
-    return {.name = "shake",
-            .verbs = {tool_verb<Shake, &Shake::shake>("shake", "X Y Z",
-                                                      "a push of the whole box [m/s^2], which fades")},
-            .chance = 1};
+    return {
+        .name = "shake",
+        .verbs = {tool_verb<Shake, &Shake::shake>("shake", "X Y Z", "a push of the whole box [m/s^2], which fades")},
+        .chance = 1};
   }
 
   void shake(PlayModel&, const Action& a) { acceleration_ = vector_at(a, 0); }
@@ -24,7 +24,9 @@ class Shake final : public ToolOf<Shake> {
   }
   void reset(PlayModel&) override { acceleration_ = {}; }
 
-  Action random(RandomActions& dice, const Frame&) const override { return Action::parse("shake" + dice.vector(-20, 20)); }
+  Action random(RandomActions& dice, const Frame&) const override {
+    return Action::parse("shake" + dice.vector(-20, 20));
+  }
 
  private:
   static constexpr double left_after_a_second = 1e-4;

@@ -24,6 +24,7 @@ class RandomActions;
 struct ToolInfo {
   std::string_view name;      ///< of its button, and of the setting `tool`
   char key = 0;               ///< chooses it; 0: it has no button, and works by itself
+  char held_key = 0;          ///< works with it while it is held, whatever tool is chosen; 0: none
   std::string_view hint{};    ///< a line for the first minute, until its first verb is used; empty: none
   bool needs_matter = false;  ///< a press beside what it takes turns the view instead
   std::vector<Verb> verbs{};  ///< what scripts can say of it, and what its drags post
@@ -59,7 +60,9 @@ class Tool {
   /// m/s^2, beside gravity.
   virtual Vec3d acceleration() const { return {}; }
   /// The verb `release`.
-  virtual void release(PlayModel&) {}
+  virtual void end(PlayModel&) {}
+  /// Whether that edit goes on after it: the next one of its name is none of its own.
+  virtual bool goes_on(std::string_view) const { return false; }
   /// The world is at another moment: what was begun has ended.
   virtual void reset(PlayModel&) {}
   virtual bool holds_body() const { return false; }

@@ -14,9 +14,9 @@ namespace dreampm::play {
 DM_TOOLS(DM_DECLARE)
 #undef DM_DECLARE
 
-ToolSet::ToolSet() {
+ToolSet::ToolSet(){
 #define DM_MAKE(name) tools_.push_back(make_##name());
-  DM_TOOLS(DM_MAKE)
+    DM_TOOLS(DM_MAKE)
 #undef DM_MAKE
 }
 

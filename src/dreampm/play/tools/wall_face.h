@@ -1,4 +1,4 @@
-// Which wall of the box a hand takes hold of, and where it draws it.
+// Which wall of the box the cursor takes hold of, and where it drags it.
 #pragma once
 #include <optional>
 

@@ -131,10 +131,9 @@ class Walls final : public ToolOf<Walls> {
     const int axis = axis_of(side).axis;
     const double least = least_room * g.domain.size()[axis];
     // Within what the verb takes.
-    const double at =
-        axis_of(side).is_high
-            ? std::clamp(*to, std::min(g.room.min[axis] + least, g.domain.max[axis]), g.domain.max[axis])
-            : std::clamp(*to, g.domain.min[axis], std::max(g.room.max[axis] - least, g.domain.min[axis]));
+    const double at = axis_of(side).is_high
+                          ? std::clamp(*to, std::min(g.room.min[axis] + least, g.domain.max[axis]), g.domain.max[axis])
+                          : std::clamp(*to, g.domain.min[axis], std::max(g.room.max[axis] - least, g.domain.min[axis]));
     g.post("wall", {at}, scene::wall_names.at(side));
   }
   void release(Gesture& g) override { g.post("release"); }

@@ -74,8 +74,8 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 }  // namespace
 
 App::Impl::Impl(const Cursor::Post& post_, int threads, std::string isa, bool offscreen_)
-    : post(post_), pointer([this](const Action& a) { return hand(a); }), panels(post_), offscreen(offscreen_) {
-  panels.pictures = &pictures;
+    : post(post_), cursor([this](const Action& a) { return use_tool(a); }), panels(post_), offscreen(offscreen_) {
+  panels.host.pictures = &pictures;
   facts.threads = threads, facts.isa = std::move(isa);
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -101,18 +101,18 @@ App::App(Cursor::Post post, int threads, std::string isa, bool offscreen)
     : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
 App::~App() = default;
 
-void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
-  Impl& a = *impl_;
+void App::Impl::set_look(const Frame& frame, float to) {
+  if (to == scale && frame.settings.dark == dark) return;
+  set_style(dark = frame.settings.dark);
+  ImGui::GetStyle().ScaleAllSizes(scale = panels.host.scale = to);
+  // Its letters are made at twice their size.
+  ImGui::GetIO().FontGlobalScale = has_font ? 0.5f * to : to;
+}
+
+void App::Impl::feed_imgui(const Input& input, int width, int height) {
   ImGuiIO& io = ImGui::GetIO();
-  const bool dark = frame.settings.dark;
-  if (scale != a.scale || dark != a.dark) {
-    set_style(a.dark = dark);
-    ImGui::GetStyle().ScaleAllSizes(a.scale = a.panels.scale = scale);
-    // Its letters are made at twice their size.
-    io.FontGlobalScale = a.has_font ? 0.5f * scale : scale;
-  }
-  const double seconds = a.last_time < 0 ? 1.0 / 60 : std::max(input.time - a.last_time, 1e-4);
-  a.last_time = input.time;
+  const double seconds = last_time < 0 ? 1.0 / 60 : std::max(input.time - last_time, 1e-4);
+  last_time = input.time;
   io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
   io.DeltaTime = static_cast<float>(seconds);
   io.MousePos = input.inside ? ImVec2{static_cast<float>(input.x), static_cast<float>(input.y)} : ImVec2{-1e9f, -1e9f};
@@ -120,63 +120,74 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   io.MouseWheel = static_cast<float>(input.wheel);
   io.KeyCtrl = input.control, io.KeyShift = input.shift;
   // A key that came and went since the last picture is up in the next one: ImGui would miss it.
-  for (const int key : a.late_releases) io.KeysDown[key] = false;
-  a.late_releases.clear();
+  for (const int key : late_releases) io.KeysDown[key] = false;
+  late_releases.clear();
   for (const int key : input.released) {
     if (key < 0 || key >= 512) continue;
     if (std::find(input.pressed.begin(), input.pressed.end(), key) != input.pressed.end())
-      a.late_releases.push_back(key);
+      late_releases.push_back(key);
     else
       io.KeysDown[key] = false;
   }
   for (const int key : input.pressed)
     if (key >= 0 && key < 512) io.KeysDown[key] = true;
   for (const char c : input.text) io.AddInputCharacter(static_cast<unsigned char>(c));
-  io.ConfigFlags = a.panels.by_keyboard ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
+  io.ConfigFlags = panels.host.by_keyboard ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
   // Where pictures are slow, two clicks come late.
-  io.MouseDoubleClickTime = 0.3f + static_cast<float>(std::min(a.shown_for, 0.5));
-  ImGui_ImplOpenGL3_NewFrame();
-  ImGui::NewFrame();
+  io.MouseDoubleClickTime = 0.3f + static_cast<float>(std::min(shown_for, 0.5));
+}
 
-  const Layout l = a.panels.layout(static_cast<float>(width), static_cast<float>(height));
-  const int left = a.left = static_cast<int>(l.left), bottom = a.bottom = static_cast<int>(l.bottom);
-  if (!a.has_camera) a.pointer.reset_camera(frame), a.has_camera = true;
-  const int wide = std::max(1, width - left), side = Impl::side_width(frame, wide);
-  const int high = std::max(1, height - bottom);
+void App::Impl::lay_out(const Frame& frame, int width, int height) {
+  const Layout l = panels.layout(static_cast<float>(width), static_cast<float>(height));
+  left = static_cast<int>(l.left), bottom = static_cast<int>(l.bottom);
+  if (!has_camera) cursor.reset_camera(frame), has_camera = true;
+  picture_width = std::max(1, width - left);
+  scene_width = side_width(frame, picture_width), scene_height = std::max(1, height - bottom);
   // A side is as wide as a picture of five to four, if need be by a wider view.
-  a.scene_width = side, a.scene_height = high;
-  a.pointer.resize(side, high, frame.other ? std::clamp(1.25 * high / side, 1.0, 2.0) : 1.0);
+  cursor.resize(scene_width, scene_height, frame.other ? std::clamp(1.25 * scene_height / scene_width, 1.0, 2.0) : 1.0);
+}
+
+void App::Impl::move_cursor(const Frame& frame, const Input& input) {
+  const bool over_panel = ImGui::GetIO().WantCaptureMouse;
   // A drag goes on in the picture in which it began.
-  if (!(a.was_left || a.was_right || a.was_middle)) a.over_second = frame.other && input.x - left >= side;
-  const Frame& under = a.over_second ? frame.side_b() : frame.side_a();
-  // Dear ImGui wants text for a picture more than there is a field that takes it.
-  if (!io.WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
-  for (const int key : input.released)
-    if (key == 'P') a.pointer.hold_pour(frame, false);
-  const bool over_panel = io.WantCaptureMouse;
-  a.pointer.choose(static_cast<std::size_t>(a.panels.asked(frame, "tool", frame.settings.tool)));
-  const double x = input.x - left - (a.over_second ? wide - side : 0);
+  if (!(was_left || was_right || was_middle)) over_second = frame.other && input.x - left >= scene_width;
+  const Frame& under = over_second ? frame.side_b() : frame.side_a();
+  cursor.choose(static_cast<std::size_t>(panels.host.asked(frame, "tool", static_cast<double>(frame.settings.tool))));
+  const double x = input.x - left - (over_second ? picture_width - scene_width : 0);
   if (input.inside && !over_panel)
-    a.pointer.move(under, x, input.y, input.time);
+    cursor.move(under, x, input.y, input.time);
   else
-    a.pointer.leave();
-  if (!input.files.empty()) a.drop_files(under, input.files, x, input.y);
+    cursor.leave();
+  if (!input.files.empty()) drop_files(under, input.files, x, input.y);
   const auto button = [&](bool now, bool& before, Cursor::Button which) {
-    if (now && !before && !over_panel) a.pointer.press(under, which, input.shift);
-    if (!now && before) a.pointer.release(which);
+    if (now && !before && !over_panel) cursor.press(under, which, input.shift);
+    if (!now && before) cursor.release(which);
     before = now;
   };
-  button(input.left, a.was_left, Cursor::Button::left);
-  button(input.right, a.was_right, Cursor::Button::right);
-  button(input.middle, a.was_middle, Cursor::Button::middle);
-  if (input.wheel != 0 && !over_panel) a.pointer.wheel(input.wheel);
-  if (const std::string_view missed = a.pointer.take_missed(); !missed.empty())
-    a.panels.tell(fmt::format("{}: there is nothing under the pointer; a drag here turns the view", missed));
+  button(input.left, was_left, Cursor::Button::left);
+  button(input.right, was_right, Cursor::Button::right);
+  button(input.middle, was_middle, Cursor::Button::middle);
+  if (input.wheel != 0 && !over_panel) cursor.wheel(input.wheel);
+  if (const std::string_view missed = cursor.take_missed(); !missed.empty())
+    panels.host.tell(fmt::format("{}: there is nothing under the pointer; a drag here turns the view", missed));
+}
+
+void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
+  Impl& a = *impl_;
+  a.set_look(frame, scale);
+  a.feed_imgui(input, width, height);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui::NewFrame();
+  a.lay_out(frame, width, height);
+  // Dear ImGui wants text for a picture more than there is a field that takes it.
+  if (!ImGui::GetIO().WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
+  a.released_keys(frame, input);
+  a.move_cursor(frame, input);
   if (a.chooses_size && a.chooser.wants_small(frame, input.time)) {
     a.post({"size", {size_names().front()}});
-    a.panels.tell("this machine did not keep up: fewer particles; key M has more");
+    a.panels.host.tell("this machine did not keep up: fewer particles; key M has more");
   }
-  a.panels.draw(frame, a.pointer, a.facts, static_cast<float>(width), static_cast<float>(height));
+  a.panels.draw(frame, a.cursor, a.facts, static_cast<float>(width), static_cast<float>(height));
   ImGui::Render();
 }
 
@@ -196,7 +207,7 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
   const int side = Impl::side_width(frame, wide);
   if (a.offscreen) fit(a.window, width, height);
   const unsigned target = a.offscreen ? a.window->target().name() : 0;
-  a.draw_sides(frame, side, high, a.pointer.mark());
+  a.draw_sides(frame, side, high, a.cursor.mark());
   if (a.second) copy(*a.second, target, a.left + wide - side, a.bottom);
   copy(*a.scene, target, a.left, a.bottom);
   glViewport(0, 0, width, height);
@@ -213,12 +224,12 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
 
 void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
 
-void App::Impl::draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& hand) {
+void App::Impl::draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& mark) {
   fit(scene, width, height);
-  view.draw(frame.side_a(), pointer.seen_by(), hand, *scene);
+  view.draw(frame.side_a(), cursor.seen_by(), mark, *scene);
   if (!frame.other) return second.reset();
   fit(second, width, height);
-  view.draw(frame.side_b(), pointer.seen_by(), hand, *second);
+  view.draw(frame.side_b(), cursor.seen_by(), mark, *second);
 }
 
 void App::Impl::save_last(const Frame& frame) {
@@ -243,12 +254,12 @@ void App::Impl::go_on_with_last() {
     }
     const double seconds = saving->to.seconds();
     // The same words each time: they take one place among the messages.
-    if (saving->next < saving->shown.size()) return panels.tell("saving the last seconds");
+    if (saving->next < saving->shown.size()) return panels.host.tell("saving the last seconds");
     saving->to.finish();
-    panels.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
+    panels.host.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
     info("wrote {}", file);
   } catch (const std::exception& e) {
-    panels.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
+    panels.host.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
     warn("{}: {}", file, e.what());
   }
   saving.reset();
@@ -281,7 +292,7 @@ void App::Impl::film(const Frame& frame, double time) {
     if (offscreen) throw;
     failed_film = frame.film;  // until the playground knows
     warn("no film: {}", e.what());
-    panels.tell(fmt::format("no film: {}", e.what()), true);
+    panels.host.tell(fmt::format("no film: {}", e.what()), true);
     post({"film", {"off"}});
   }
 }
@@ -293,7 +304,7 @@ void App::Impl::end_film() {
     info("wrote {}", ended->file().string());
     std::string text = fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string());
     if (const long n = ended->left_out()) text += fmt::format("; {} pictures were left out: the encoder was behind", n);
-    panels.tell(text);
+    panels.host.tell(text);
   }
 }
 
@@ -307,7 +318,7 @@ RgbImage App::view() { return impl_->seen(); }
 
 RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
 
-const std::vector<Place>& App::places() const { return impl_->panels.places(); }
+const std::vector<Place>& App::places() const { return impl_->panels.host.places; }
 
 bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame); }
 
@@ -315,7 +326,7 @@ bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
 
 double App::moves_until() const { return impl_->last_time + impl_->panels.moves_for(); }
 
-void App::tell(const std::string& what, bool is_error) { impl_->panels.tell(what, is_error); }
+void App::tell(const std::string& what, bool is_error) { impl_->panels.host.tell(what, is_error); }
 
 bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
 

@@ -68,8 +68,9 @@ class App {
   /// Whether a dialog asks about that.
   bool asks_to_close() const;
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 

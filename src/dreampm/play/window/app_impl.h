@@ -7,6 +7,7 @@
 
 #include "dreampm/gl/objects.h"
 #include "dreampm/play/model/size_chooser.h"
+#include "dreampm/play/panels/key_help.h"
 #include "dreampm/play/panels/pictures.h"
 #include "dreampm/play/window/app.h"
 #include "dreampm/play/window/last_seconds.h"
@@ -19,8 +20,11 @@ struct App::Impl {
   Impl(const Cursor::Post& post, int threads, std::string isa, bool offscreen);
   ~Impl();
 
-  struct Binding;
-  static const std::vector<Binding>& bindings();
+  struct KeyBinding;
+  struct KeyRow;
+  /// The one list of keys: what they do, and in words.
+  static const std::vector<KeyRow>& key_rows();
+  static const std::vector<KeyHelp>& key_words();
   /// What is seen beside the panels, of both sides while materials are compared, with the legend of
   /// its colors and its scale.
   RgbImage seen();
@@ -31,12 +35,18 @@ struct App::Impl {
   void save_last(const Frame& frame);
   /// Draws some of it, as the camera stands now, for a part of a picture's time.
   void go_on_with_last();
-  /// The sides of a frame into their framebuffers; with the ring of the brush, where a hand has
-  /// one.
-  void draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& hand);
+  /// The sides of a frame into their framebuffers; with the ring of the brush, where there
+  /// is one.
+  void draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& mark);
+  // Of a picture, in this order.
+  void set_look(const Frame& frame, float to);
+  void feed_imgui(const Input& input, int width, int height);
+  void lay_out(const Frame& frame, int width, int height);
   void keys(const Frame& frame, const Input& input);
-  /// What the pointer does.
-  std::uint64_t hand(const Action& action) {
+  void released_keys(const Frame& frame, const Input& input);
+  void move_cursor(const Frame& frame, const Input& input);
+  /// What tools do.
+  std::uint64_t use_tool(const Action& action) {
     panels.note_use(action.verb);
     return post(action);
   }
@@ -44,14 +54,14 @@ struct App::Impl {
   /// at that place of the picture under it.
   void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
   void shake(double x, double z);
-  void set(const std::string& id, double value) { panels.set(id, value); }
+  void set(const std::string& id, double value) { panels.host.set(id, value); }
   /// A key turns over what was asked for last, however late frames are.
   void toggle(const Frame& frame, const std::string& id, double value) {
-    set(id, panels.asked(frame, id, value) == 0 ? 1 : 0);
+    set(id, panels.host.asked(frame, id, value) == 0 ? 1 : 0);
   }
 
   Cursor::Post post;
-  Cursor pointer;
+  Cursor cursor;
   Panels panels;
   View view;
   Pictures pictures;
@@ -81,6 +91,7 @@ struct App::Impl {
   float scale = 0;
   std::vector<int> late_releases;
   int scene_width = 1, scene_height = 1;  ///< of the picture, or that of a side
+  int picture_width = 1;                  ///< of all sides
   int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
 };
 

@@ -55,10 +55,10 @@ class Drawer {
   App app_;
 };
 
-/// Drawn frames that random hands stay at a stage, and from one thing that they do to the next.
+/// Drawn frames that random actions stay at a scene, and from one of them to the next.
 constexpr int stay = 150, pause = 2;
 
-void do_anything(RandomActions& hands, Playground& playground, int frame) {
+void do_anything(RandomActions& actions, Playground& playground, int frame) {
   const std::shared_ptr<const Frame> now = playground.frame();
   const Box3d& box = now->domain;
   const scene::Space& space = playground.simulation().scene().description().space;
@@ -79,7 +79,7 @@ void do_anything(RandomActions& hands, Playground& playground, int frame) {
                 fmt::format("frame {} of {}: {} is at ({}, {}, {})", frame, now->story, matter.name, x.x, x.y, x.z));
   if (frame % pause != 0) return;
   try {
-    playground.act(frame % stay == 0 ? hands.open() : hands.next(*now));
+    playground.act(frame % stay == 0 ? actions.open() : actions.next(*now));
   } catch (const InputError&) {
     // As a person's is, what cannot be done is refused.
   }
@@ -147,10 +147,10 @@ std::uint64_t play_headless(PlayScene stage, const HeadlessOptions& options) {
       }
     }
   }
-  std::optional<RandomActions> hands;
-  if (options.random_hands) hands.emplace(*options.random_hands);
+  std::optional<RandomActions> actions;
+  if (options.random_actions) actions.emplace(*options.random_actions);
   for (int n = 0; n < options.frames; ++n) {
-    if (hands) do_anything(*hands, playground, n);
+    if (actions) do_anything(*actions, playground, n);
     tick({});
   }
   if (drawer) drawer->end_film();

@@ -19,15 +19,15 @@ struct HeadlessOptions {
   int width = 1280, height = 720;
   std::optional<float> ui_scale = {};  ///< of letters and panels; absent: as the size asks
   bool panels = true;                  ///< draws them too; else pictures are of the whole window
-  /// Seed of hands that do anything between the frames after the script, and open another stage now
+  /// Seed of actions by chance between the frames after the script, which open another scene now
   /// and then: for runs that look for what breaks.
-  std::optional<std::uint64_t> random_hands;
+  std::optional<std::uint64_t> random_actions;
 };
 
 /// Plays, writes pictures, and gives the hash of the world in the end. A script has a line for each
 /// action, "steps N" for a tick of that many steps, and "frames N" for that many drawn frames.
-/// Throws InputError that names file and line for what cannot be done; RunError where random hands
-/// brought matter out of the box, or made it something that is not a number.
+/// Throws InputError that names file and line for what cannot be done; RunError where random
+/// actions brought matter out of the box, or made it something that is not a number.
 std::uint64_t play_headless(PlayScene stage, const HeadlessOptions& options);
 
 }  // namespace dreampm::play

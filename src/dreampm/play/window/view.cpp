@@ -71,7 +71,7 @@ std::vector<gl::LineSegment> lines_of(std::span<const PlaceMark> marks) {
 
 }  // namespace
 
-void View::draw(const Frame& frame, const gl::Camera& camera, const std::optional<CursorMark>& hand,
+void View::draw(const Frame& frame, const gl::Camera& camera, const std::optional<CursorMark>& mark,
                 const gl::Framebuffer& framebuffer) {
   const std::string& choice = look_choices()[static_cast<std::size_t>(frame.settings.look)];
   const auto asked = std::find_if(ladder.begin(), ladder.end(), [&](const Rung& r) { return r.choice == choice; });
@@ -123,7 +123,7 @@ void View::draw(const Frame& frame, const gl::Camera& camera, const std::optiona
   picture.theme = frame.settings.dark ? gl::dark_theme() : gl::light_theme();
   const std::vector<gl::LineSegment> marks = lines_of(frame.marks);
   picture.segments = marks;
-  if (hand) picture.ring = {hand->center, hand->normal, hand->radius};
+  if (mark) picture.ring = {mark->center, mark->normal, mark->radius};
   load_ = static_cast<double>(framebuffer.width()) * framebuffer.height() +
           pixels_of_particle * static_cast<double>(frame.particles);
   renderer_.draw(picture, camera, framebuffer);

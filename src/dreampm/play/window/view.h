@@ -53,7 +53,7 @@ class LookLadder {
 class View {
  public:
   /// Draws over all of the framebuffer.
-  void draw(const Frame& frame, const gl::Camera& camera, const std::optional<CursorMark>& hand,
+  void draw(const Frame& frame, const gl::Camera& camera, const std::optional<CursorMark>& mark,
             const gl::Framebuffer& framebuffer);
   /// Takes how long the last picture took to draw [ms], and for how long the one before was shown
   /// [s]: the look `automatic` goes by that, and where nobody says it, it is the best.

@@ -221,7 +221,7 @@ void show(Window& window, Worker& worker, App& app) {
     app.keep(frame);
     const float scale = window.scale(width, height);
     const bool draws = pace.is_due(*frame, inputs.back().time, touched, app.moves_until());
-    // What hands do goes to the solver at once.
+    // What the user does goes to the solver at once.
     if (draws || touched)
       for (const Input& input : inputs) app.take(*frame, input, width, height, scale);
     if (draws) {

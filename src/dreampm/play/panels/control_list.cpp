@@ -1,4 +1,5 @@
-// The controls of the panel: a slider, a switch, a list or a color for each.
+#include "dreampm/play/panels/control_list.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_internal.h>
@@ -8,7 +9,7 @@
 #include <cmath>
 
 #include "dreampm/play/panels/imgui_text.h"
-#include "dreampm/play/panels/panels.h"
+#include "dreampm/play/panels/panel_host.h"
 
 namespace dreampm::play {
 namespace {
@@ -40,7 +41,7 @@ void row(const std::string& left, const std::string& right) {
 
 }  // namespace
 
-void Panels::controls_of(const Frame& frame, const std::string& panel) {
+void ControlList::draw(const Frame& frame, const std::string& panel, PanelHost& host) {
   std::size_t more = 0, all = 0;
   for (const ControlInfo& c : *frame.controls)
     if (c.panel == panel && c.color.empty()) ++all, more += c.advanced ? 1 : 0;
@@ -50,7 +51,7 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
     // Tools have buttons.
     if (c.panel != panel || c.id == "tool") continue;
     if (!c.color.empty()) {
-      color(frame, i);
+      color(frame, i, host);
       i += 2;
       continue;
     }
@@ -59,10 +60,10 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
                                     [&](const ControlInfo& o) { return o.id == c.needs; });
     const bool is_idle =
         other != frame.controls->end() &&
-        (asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
+        (host.asked(frame, other->id, frame.values[static_cast<std::size_t>(other - frame.controls->begin())]) == 0) !=
             c.needs_off;
     if (is_idle) ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 0.45f * ImGui::GetStyle().Alpha);
-    control(c, asked(frame, c.id, frame.values[i]), frame.live[i]);
+    control(c, host.asked(frame, c.id, frame.values[i]), frame.live[i], host);
     if (is_idle) ImGui::PopStyleVar();
   }
   if (more == 0) return;
@@ -73,23 +74,23 @@ void Panels::controls_of(const Frame& frame, const std::string& panel) {
     else
       all_of_.insert(panel);
   }
-  note_place("all " + panel);
+  host.note_place("all " + panel);
 }
 
-void Panels::color(const Frame& frame, std::size_t first) {
+void ControlList::color(const Frame& frame, std::size_t first, PanelHost& host) {
   const ControlInfo& c = (*frame.controls)[first];
   std::array<float, 3> rgb{};
   for (std::size_t k = 0; k < 3; ++k)
-    rgb[k] = static_cast<float>(asked(frame, (*frame.controls)[first + k].id, frame.values[first + k]));
+    rgb[k] = static_cast<float>(host.asked(frame, (*frame.controls)[first + k].id, frame.values[first + k]));
   // Colors of several materials bear the same label.
   ImGui::PushID(c.color.c_str());
   const float high = ImGui::GetFrameHeight();
   // As wide as no switch is.
-  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, scale);
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, host.scale);
   if (ImGui::ColorButton("##color", {rgb[0], rgb[1], rgb[2], 1}, ImGuiColorEditFlags_NoTooltip, {3 * high, high}))
     ImGui::OpenPopup("picker");
   ImGui::PopStyleVar();
-  note_place(c.color);
+  host.note_place(c.color);
   const ImVec2 below{ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y + ImGui::GetStyle().ItemSpacing.y};
   ImGui::SameLine();
   ImGui::TextUnformatted(c.label.c_str());
@@ -97,13 +98,13 @@ void Panels::color(const Frame& frame, std::size_t first) {
   if (ImGui::BeginPopup("picker")) {
     ImGui::SetNextItemWidth(12 * ImGui::GetFontSize());
     if (ImGui::ColorPicker3("##picker", rgb.data(), ImGuiColorEditFlags_NoSidePreview))
-      for (std::size_t k = 0; k < 3; ++k) set((*frame.controls)[first + k].id, static_cast<double>(rgb[k]));
+      for (std::size_t k = 0; k < 3; ++k) host.set((*frame.controls)[first + k].id, static_cast<double>(rgb[k]));
     ImGui::EndPopup();
   }
   ImGui::PopID();
 }
 
-void Panels::mark_live(const ControlInfo& c, const LiveRange& live, float wide) {
+void ControlList::mark_live(const ControlInfo& c, const LiveRange& live, float wide) {
   const bool log = c.decades && c.min > 0;
   const auto at = [&](double x) {
     return static_cast<float>(log ? std::log(x / c.min) / std::log(c.max / c.min) : (x - c.min) / (c.max - c.min));
@@ -120,7 +121,7 @@ void Panels::mark_live(const ControlInfo& c, const LiveRange& live, float wide) 
   if (live.max < c.max) mark(from.x + slider_padding + at(live.max) * room + knob, from.x + wide);
 }
 
-void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
+void ControlList::slider(const ControlInfo& c, double value, const LiveRange& live, PanelHost& host) {
   // A click may be the first of two that reset: what it sets waits until that is known.
   const bool held = held_.id == c.id;
   const double now_shown = held && !held_.moved ? held_.value : value;
@@ -137,7 +138,7 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
   const ImGuiIO& io = ImGui::GetIO();
   const bool typed = ImGui::TempInputIsActive(ImGui::GetID("##slider"));
   if (!typed) ImGui::PushStyleColor(ImGuiCol_Text, {0, 0, 0, 0});
-  // Dear ImGui begins a logarithmic scale where the decimals of its text end.
+  // Dear ImGui begins a logarithmic host.scale where the decimals of its text end.
   const std::string text = typed || io.KeyCtrl ? value_text(now_shown) : fmt::format("%.{}f", decimals_of(c.min));
   const bool changed =
       ImGui::SliderScalar("##slider", ImGuiDataType_Double, &edited, &c.min, &c.max, text.c_str(), flags);
@@ -157,7 +158,7 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
   if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(0)) {
     held_ = {};
     ImGui::ClearActiveID();
-    set(c.id, c.fallback);
+    host.set(c.id, c.fallback);
     return;
   }
   if (ImGui::IsItemActivated() && ImGui::IsMouseClicked(0) && !io.KeyCtrl)
@@ -173,7 +174,7 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
       held_.value = edited, held_.has_value = true;
     } else {
       if (held_.id == c.id) held_.moved = true;
-      set(c.id, edited);
+      host.set(c.id, edited);
     }
   }
   if (held_.id != c.id) return;
@@ -181,42 +182,42 @@ void Panels::slider(const ControlInfo& c, double value, const LiveRange& live) {
              is_late = ImGui::GetTime() - held_.began > static_cast<double>(io.MouseDoubleClickTime);
   if (!held_.moved && held_.has_value && (is_drag || is_late)) {
     held_.moved = true;
-    set(c.id, held_.value);
+    host.set(c.id, held_.value);
   }
   if (!ImGui::IsItemActive() && (held_.moved || !held_.has_value)) held_ = {};
 }
 
-void Panels::control(const ControlInfo& c, double value, const LiveRange& live) {
+void ControlList::control(const ControlInfo& c, double value, const LiveRange& live, PanelHost& host) {
   ImGui::PushID(c.id.c_str());
   if (c.is_switch()) {
     bool on = value != 0;
-    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, scale);
-    if (ImGui::Checkbox(c.label.c_str(), &on)) set(c.id, on ? 1 : 0);
+    ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, host.scale);
+    if (ImGui::Checkbox(c.label.c_str(), &on)) host.set(c.id, on ? 1 : 0);
     ImGui::PopStyleVar();
   } else if (!c.choices.empty()) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x * 0.55f);
     const auto at = static_cast<std::size_t>(std::clamp(value, 0.0, static_cast<double>(c.choices.size() - 1)));
     if (ImGui::BeginCombo(c.label.c_str(), c.choices[at].c_str())) {
       for (std::size_t n = 0; n < c.choices.size(); ++n)
-        if (ImGui::Selectable(c.choices[n].c_str(), n == at)) set(c.id, static_cast<double>(n));
+        if (ImGui::Selectable(c.choices[n].c_str(), n == at)) host.set(c.id, static_cast<double>(n));
       ImGui::EndCombo();
     }
   } else {
-    slider(c, value, live);
+    slider(c, value, live, host);
   }
-  note_place(c.id);
+  host.note_place(c.id);
   // Words about a pale control are not pale.
   ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1);
   if (ImGui::BeginPopupContextItem("about")) {
     ImGui::Text("%s", c.help.c_str());
     if (c.choices.empty()) ImGui::Text("%s to %s", value_text(c.min).c_str(), with_unit(c.max, c.unit).c_str());
     ImGui::TextDisabled("in scripts: set %s %s", c.id.c_str(), value_text(value).c_str());
-    if (ImGui::Selectable("reset")) set(c.id, c.fallback);
+    if (ImGui::Selectable("reset")) host.set(c.id, c.fallback);
     ImGui::EndPopup();
   }
   if (ImGui::IsItemHovered() && !c.help.empty() && ImGui::GetCurrentContext()->HoveredIdTimer > 0.6f) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(340 * scale);
+    ImGui::PushTextWrapPos(340 * host.scale);
     ImGui::TextUnformatted(c.help.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
