@@ -4,10 +4,10 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/gl/bench.h"
-#include "dreampm/play/bench_play.h"
-#include "dreampm/play/headless.h"
-#include "dreampm/play/stories.h"
-#include "dreampm/play/window.h"
+#include "dreampm/play/model/bench_play.h"
+#include "dreampm/play/model/stories.h"
+#include "dreampm/play/window/headless.h"
+#include "dreampm/play/window/window.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -16,7 +16,7 @@ namespace {
 struct PlayArguments {
   std::string what = "dam-break", record, script, screenshots, size, particles;
   int preset = 1, frames = 60, every = 1, threads = 0;
-  std::optional<std::uint64_t> random_hands;
+  std::optional<std::uint64_t> random_actions;
   std::optional<float> ui_scale;
   bool headless = false, no_panels = false, list = false, verbs = false;
 };
@@ -55,7 +55,7 @@ int play(const PlayArguments& args) {
   options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 1280, height = 720;
   if (!args.size.empty()) read_size(args.size, width, height);
-  dreampm::play::Stage stage = dreampm::play::load_stage(args.what, static_cast<std::size_t>(args.preset - 1));
+  dreampm::play::PlayScene stage = dreampm::play::load_play_scene(args.what, static_cast<std::size_t>(args.preset - 1));
   if (args.size.empty() && stage.window) width = stage.window->width, height = stage.window->height;
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
@@ -70,7 +70,7 @@ int play(const PlayArguments& args) {
                                                    dreampm::play::size_names().begin()));
   const std::uint64_t hash = dreampm::play::play_headless(
       std::move(stage), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
-                         !args.no_panels, args.random_hands});
+                         !args.no_panels, args.random_actions});
   fmt::print("hash {:016x}\n", hash);
   return 0;
 }
@@ -111,7 +111,7 @@ void add_play(CLI::App& app, Action& action) {
       ->transform(whole_number(1, 1000000));
   verb->add_flag("--no-panels", args->no_panels, "pictures and films of the whole window, without panels")
       ->needs(headless);
-  verb->add_option("--random", args->random_hands,
+  verb->add_option("--random", args->random_actions,
                    "seed of hands that do anything after the script, to look for what breaks; with --headless")
       ->needs(headless)
       ->transform(whole_number(0));

@@ -2,7 +2,7 @@
 // they do.
 #include <algorithm>
 
-#include "dreampm/play/action.h"
+#include "dreampm/play/model/action.h"
 #include "one_input.h"
 
 using namespace dreampm;

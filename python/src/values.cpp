@@ -84,7 +84,7 @@ void bind_motion(nb::module_& m) {
   show(motion, "Twist", {"velocity", "spin", "center"});
 }
 
-void bind_shapes(nb::module_& m) {
+void bind_scene_shapes(nb::module_& m) {
   nb::class_<Shape>(
       m, "Shape",
       "A shape. `box`, `sphere`, `cylinder`, `plane` and `mesh` make one; a | b is both together, a & b what both\n"
@@ -136,7 +136,7 @@ void bind_shapes(nb::module_& m) {
 void bind_values(nb::module_& m) {
   bind_reports(m);
   bind_motion(m);
-  bind_shapes(m);
+  bind_scene_shapes(m);
   nb::class_<Snapshot> snapshot(m, "Snapshot",
                                 "The whole state of a simulation in memory, which Simulation.snapshot gives.");
   snapshot.def_prop_ro("time", &Snapshot::time, "[s]").def_prop_ro("bytes", &Snapshot::bytes, "Of memory, about.");

@@ -1,4 +1,4 @@
-#include "ask_to_close.h"
+#include "play/ask_to_close.h"
 
 // Its macros have the names of things in other headers.
 #include <X11/Xlib.h>

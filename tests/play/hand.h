@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "dreampm/gl/headless.h"
-#include "dreampm/play/app.h"
-#include "small_stage.h"
+#include "dreampm/play/window/app.h"
+#include "play/small_stage.h"
 
 namespace dreampm::play::test {
 

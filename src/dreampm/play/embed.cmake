@@ -11,6 +11,6 @@ foreach(name IN LISTS files)
   string(REGEX REPLACE "\\.yaml$" "" stem "${name}")
   string(APPEND list "    {\"${stem}\", R\"embed(${text})embed\"},\n")
 endforeach()
-file(WRITE ${OUT} "// Made by embed.cmake from scenes/play.\n#include \"dreampm/play/story_files.h\"\n
+file(WRITE ${OUT} "// Made by embed.cmake from scenes/play.\n#include \"dreampm/play/model/story_files.h\"\n
 namespace dreampm::play {\nnamespace {\nconstexpr StoryFile all[] = {\n${list}};\n}
 std::span<const StoryFile> story_files() { return all; }\n}\n")

@@ -11,6 +11,6 @@ foreach(name IN LISTS files)
   string(APPEND list "    {\"${stem}\", file_${number}},\n")
   math(EXPR number "${number} + 1")
 endforeach()
-file(WRITE ${OUT} "// Made by embed_pictures.cmake from scenes/play/pictures.\n#include \"dreampm/play/story_files.h\"\n
+file(WRITE ${OUT} "// Made by embed_pictures.cmake from scenes/play/pictures.\n#include \"dreampm/play/model/story_files.h\"\n
 namespace dreampm::play {\nnamespace {\n${arrays}constexpr PictureFile all[] = {\n${list}};\n}
 std::span<const PictureFile> picture_files() { return all; }\n}\n")

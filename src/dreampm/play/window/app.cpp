@@ -1,0 +1,333 @@
+#include "dreampm/play/window/app.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "dreampm/base/file.h"
+#include "dreampm/base/log.h"
+#include "dreampm/base/seconds_since.h"
+#include "dreampm/play/model/playground.h"
+#include "dreampm/play/panels/imgui_text.h"
+#include "dreampm/play/panels/style.h"
+#include "dreampm/play/window/app_impl.h"
+
+namespace dreampm::play {
+namespace {
+
+constexpr float font_size = 15;
+
+/// Without scaling, into the framebuffer of that name.
+void copy(const gl::Framebuffer& from, unsigned to, int x, int y) {
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.target().name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, to);
+  glDisable(GL_SCISSOR_TEST);
+  glBlitFramebuffer(0, 0, from.width(), from.height(), x, y, x + from.width(), y + from.height(), GL_COLOR_BUFFER_BIT,
+                    GL_NEAREST);
+  glBindFramebuffer(GL_FRAMEBUFFER, to);
+}
+
+/// Dear ImGui takes its lists as a vector from 1.89 on, and as a pointer before.
+template <class Lists>
+void give_lists(ImVector<ImDrawList*>& lists, Lists& to) {
+  if constexpr (std::is_pointer_v<Lists>)
+    to = lists.Data;
+  else
+    to = lists;
+}
+
+/// What panels draw over the picture itself (its legend, its scale, the names of two sides) into
+/// the framebuffer that is bound; `left`: where the picture begins in the window.
+void draw_over(float left, float width, float height) {
+  const ImDrawData& all = *ImGui::GetDrawData();
+  ImVector<ImDrawList*> lists;
+  for (int n = 0; n < all.CmdListsCount; ++n) {
+    ImDrawList* const list = all.CmdLists[n];
+    if (list == ImGui::GetBackgroundDrawList() || std::string_view(list->_OwnerName) == Panels::legend_window)
+      lists.push_back(list);
+  }
+  ImDrawData some = all;
+  give_lists(lists, some.CmdLists);
+  some.CmdListsCount = lists.Size;
+  some.TotalVtxCount = some.TotalIdxCount = 0;
+  for (const ImDrawList* list : lists)
+    some.TotalVtxCount += list->VtxBuffer.Size, some.TotalIdxCount += list->IdxBuffer.Size;
+  some.DisplayPos = {left, 0}, some.DisplaySize = {width, height};
+  ImGui_ImplOpenGL3_RenderDrawData(&some);
+}
+
+void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
+  if (!framebuffer) framebuffer = std::make_unique<gl::Framebuffer>(width, height);
+  if (framebuffer->width() != width || framebuffer->height() != height) framebuffer->resize(width, height);
+}
+
+}  // namespace
+
+App::Impl::Impl(const Cursor::Post& post_, int threads, std::string isa, bool offscreen_)
+    : post(post_), cursor([this](const Action& a) { return use_tool(a); }), panels(post_), offscreen(offscreen_) {
+  panels.host.pictures = &pictures;
+  facts.threads = threads, facts.isa = std::move(isa);
+  ImGui::CreateContext();
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  // What typing a number into a slider needs.
+  const auto map = [&](ImGuiKey to, Key key) { io.KeyMap[to] = static_cast<int>(key); };
+  map(ImGuiKey_Escape, Key::escape), map(ImGuiKey_Enter, Key::enter), map(ImGuiKey_Tab, Key::tab);
+  map(ImGuiKey_Backspace, Key::backspace), map(ImGuiKey_Delete, Key::remove), map(ImGuiKey_LeftArrow, Key::left);
+  map(ImGuiKey_RightArrow, Key::right), map(ImGuiKey_UpArrow, Key::up), map(ImGuiKey_DownArrow, Key::down);
+  map(ImGuiKey_Home, Key::home), map(ImGuiKey_End, Key::end);
+  io.KeyMap[ImGuiKey_A] = 'A', io.KeyMap[ImGuiKey_Space] = ' ';
+  io.BackendPlatformName = "dreampm";
+  const std::string font = font_file();
+  has_font = !font.empty() && io.Fonts->AddFontFromFileTTF(font.c_str(), 2 * font_size);
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+App::Impl::~Impl() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui::DestroyContext();
+}
+
+App::App(Cursor::Post post, int threads, std::string isa, bool offscreen)
+    : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
+App::~App() = default;
+
+void App::Impl::set_look(const Frame& frame, float to) {
+  if (to == scale && frame.settings.dark == dark) return;
+  set_style(dark = frame.settings.dark);
+  ImGui::GetStyle().ScaleAllSizes(scale = panels.host.scale = to);
+  // Its letters are made at twice their size.
+  ImGui::GetIO().FontGlobalScale = has_font ? 0.5f * to : to;
+}
+
+void App::Impl::feed_imgui(const Input& input, int width, int height) {
+  ImGuiIO& io = ImGui::GetIO();
+  const double seconds = last_time < 0 ? 1.0 / 60 : std::max(input.time - last_time, 1e-4);
+  last_time = input.time;
+  io.DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+  io.DeltaTime = static_cast<float>(seconds);
+  io.MousePos = input.inside ? ImVec2{static_cast<float>(input.x), static_cast<float>(input.y)} : ImVec2{-1e9f, -1e9f};
+  io.MouseDown[0] = input.left, io.MouseDown[1] = input.right, io.MouseDown[2] = input.middle;
+  io.MouseWheel = static_cast<float>(input.wheel);
+  io.KeyCtrl = input.control, io.KeyShift = input.shift;
+  // A key that came and went since the last picture is up in the next one: ImGui would miss it.
+  for (const int key : late_releases) io.KeysDown[key] = false;
+  late_releases.clear();
+  for (const int key : input.released) {
+    if (key < 0 || key >= 512) continue;
+    if (std::find(input.pressed.begin(), input.pressed.end(), key) != input.pressed.end())
+      late_releases.push_back(key);
+    else
+      io.KeysDown[key] = false;
+  }
+  for (const int key : input.pressed)
+    if (key >= 0 && key < 512) io.KeysDown[key] = true;
+  for (const char c : input.text) io.AddInputCharacter(static_cast<unsigned char>(c));
+  io.ConfigFlags = panels.host.by_keyboard ? ImGuiConfigFlags_NavEnableKeyboard : ImGuiConfigFlags_None;
+  // Where pictures are slow, two clicks come late.
+  io.MouseDoubleClickTime = 0.3f + static_cast<float>(std::min(shown_for, 0.5));
+}
+
+void App::Impl::lay_out(const Frame& frame, int width, int height) {
+  const Layout l = panels.layout(static_cast<float>(width), static_cast<float>(height));
+  left = static_cast<int>(l.left), bottom = static_cast<int>(l.bottom);
+  if (!has_camera) cursor.reset_camera(frame), has_camera = true;
+  picture_width = std::max(1, width - left);
+  scene_width = side_width(frame, picture_width), scene_height = std::max(1, height - bottom);
+  // A side is as wide as a picture of five to four, if need be by a wider view.
+  cursor.resize(scene_width, scene_height, frame.other ? std::clamp(1.25 * scene_height / scene_width, 1.0, 2.0) : 1.0);
+}
+
+void App::Impl::move_cursor(const Frame& frame, const Input& input) {
+  const bool over_panel = ImGui::GetIO().WantCaptureMouse;
+  // A drag goes on in the picture in which it began.
+  if (!(was_left || was_right || was_middle)) over_second = frame.other && input.x - left >= scene_width;
+  const Frame& under = over_second ? frame.side_b() : frame.side_a();
+  cursor.choose(static_cast<std::size_t>(panels.host.asked(frame, "tool", static_cast<double>(frame.settings.tool))));
+  const double x = input.x - left - (over_second ? picture_width - scene_width : 0);
+  if (input.inside && !over_panel)
+    cursor.move(under, x, input.y, input.time);
+  else
+    cursor.leave();
+  if (!input.files.empty()) drop_files(under, input.files, x, input.y);
+  const auto button = [&](bool now, bool& before, Cursor::Button which) {
+    if (now && !before && !over_panel) cursor.press(under, which, input.shift);
+    if (!now && before) cursor.release(which);
+    before = now;
+  };
+  button(input.left, was_left, Cursor::Button::left);
+  button(input.right, was_right, Cursor::Button::right);
+  button(input.middle, was_middle, Cursor::Button::middle);
+  if (input.wheel != 0 && !over_panel) cursor.wheel(input.wheel);
+  if (const std::string_view missed = cursor.take_missed(); !missed.empty())
+    panels.host.tell(fmt::format("{}: there is nothing under the pointer; a drag here turns the view", missed));
+}
+
+void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
+  Impl& a = *impl_;
+  a.set_look(frame, scale);
+  a.feed_imgui(input, width, height);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui::NewFrame();
+  a.lay_out(frame, width, height);
+  // Dear ImGui wants text for a picture more than there is a field that takes it.
+  if (!ImGui::GetIO().WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
+  a.released_keys(frame, input);
+  a.move_cursor(frame, input);
+  if (a.chooses_size && a.chooser.wants_small(frame, input.time)) {
+    a.post({"size", {size_names().front()}});
+    a.panels.host.tell("this machine did not keep up: fewer particles; key M has more");
+  }
+  a.panels.draw(frame, a.cursor, a.facts, static_cast<float>(width), static_cast<float>(height));
+  ImGui::Render();
+}
+
+void App::draw(const Frame& frame, const Input& input, int width, int height, float scale) {
+  take(frame, input, width, height, scale);
+  paint(frame, input, width, height);
+}
+
+void App::paint(const Frame& frame, const Input& input, int width, int height) {
+  Impl& a = *impl_;
+  const double seconds = a.painted < 0 ? 1.0 / 60 : std::max(input.time - a.painted, 1e-4);
+  a.painted = input.time;
+  a.shown_for = seconds;
+  if (!a.offscreen) a.facts.frames_a_second = 0.9 * a.facts.frames_a_second + 0.1 / seconds;
+  const auto began = std::chrono::steady_clock::now();
+  const int wide = std::max(1, width - a.left), high = std::max(1, height - a.bottom);
+  const int side = Impl::side_width(frame, wide);
+  if (a.offscreen) fit(a.window, width, height);
+  const unsigned target = a.offscreen ? a.window->target().name() : 0;
+  a.draw_sides(frame, side, high, a.cursor.mark());
+  if (a.second) copy(*a.second, target, a.left + wide - side, a.bottom);
+  copy(*a.scene, target, a.left, a.bottom);
+  glViewport(0, 0, width, height);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  glFinish();
+  a.facts.draw_ms = 1e3 * seconds_since(began);
+  a.facts.look = a.view.look();
+  // Off the screen nobody waits: pictures are the same on every machine.
+  if (!a.offscreen) a.view.took(a.facts.draw_ms, seconds);
+  a.film(frame, input.time);
+  // A picture that is wanted is of what was drawn just now.
+  if (!a.wants_picture) a.go_on_with_last();
+}
+
+void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
+
+void App::Impl::draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& mark) {
+  fit(scene, width, height);
+  view.draw(frame.side_a(), cursor.seen_by(), mark, *scene);
+  if (!frame.other) return second.reset();
+  fit(second, width, height);
+  view.draw(frame.side_b(), cursor.seen_by(), mark, *second);
+}
+
+void App::Impl::save_last(const Frame& frame) {
+  if (saving || last.shown().empty()) return;
+  const std::filesystem::path file = free_name(without_blanks(frame.story) + "-last", ".mp4");
+  saving.reset(new Saving{{file, LastSeconds::fps}, last.shown()});
+}
+
+void App::Impl::go_on_with_last() {
+  if (!saving) return;
+  constexpr double part = 0.03;  // s
+  const auto began = std::chrono::steady_clock::now();
+  const std::string file = saving->to.file().string();
+  // A window does not wait for the encoder.
+  const auto goes_on = [&] { return seconds_since(began) < part && (offscreen || !saving->to.is_behind()); };
+  try {
+    for (; saving->next < saving->shown.size() && goes_on(); ++saving->next) {
+      const LastSeconds::Shown& one = saving->shown[saving->next];
+      // Where the pointer is now it was not then.
+      draw_sides(*one.frame, scene->width(), scene->height(), std::nullopt);
+      saving->to.add(seen(), one.time);
+    }
+    const double seconds = saving->to.seconds();
+    // The same words each time: they take one place among the messages.
+    if (saving->next < saving->shown.size()) return panels.host.tell("saving the last seconds");
+    saving->to.finish();
+    panels.host.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
+    info("wrote {}", file);
+  } catch (const std::exception& e) {
+    panels.host.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
+    warn("{}: {}", file, e.what());
+  }
+  saving.reset();
+}
+
+RgbImage App::Impl::seen() {
+  const int wide = scene->width() + (second ? second->width() : 0), high = scene->height();
+  fit(whole, wide, high);
+  copy(*scene, whole->target().name(), 0, 0);
+  if (second) copy(*second, whole->target().name(), scene->width(), 0);
+  glViewport(0, 0, wide, high);
+  draw_over(static_cast<float>(left), static_cast<float>(wide), static_cast<float>(high));
+  return whole->read();
+}
+
+void App::Impl::film(const Frame& frame, double time) {
+  try {
+    if (recorder && recorder->file() != frame.film) end_film();
+    if (frame.film != failed_film) failed_film.clear();
+    if (frame.film.empty() || !failed_film.empty()) return;
+    if (!recorder) {
+      // The window goes on where the encoder is slower than it.
+      const auto behind = offscreen ? Recorder::Behind::waits : Recorder::Behind::leaves_out;
+      recorder = std::make_unique<Recorder>(frame.film, frame.film_fps, behind);
+    }
+    recorder->add(seen(), time);
+    facts.film_seconds = recorder->seconds();
+  } catch (const std::exception& e) {
+    recorder.reset(), facts.film_seconds.reset();
+    if (offscreen) throw;
+    failed_film = frame.film;  // until the playground knows
+    warn("no film: {}", e.what());
+    panels.host.tell(fmt::format("no film: {}", e.what()), true);
+    post({"film", {"off"}});
+  }
+}
+
+void App::Impl::end_film() {
+  facts.film_seconds.reset();
+  if (const auto ended = std::move(recorder)) {
+    ended->finish();
+    info("wrote {}", ended->file().string());
+    std::string text = fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string());
+    if (const long n = ended->left_out()) text += fmt::format("; {} pictures were left out: the encoder was behind", n);
+    panels.host.tell(text);
+  }
+}
+
+void App::choose_size(bool chooses) { impl_->chooses_size = chooses; }
+
+void App::show_panels(bool shown) { impl_->panels.shown = shown; }
+
+void App::end_film() { impl_->end_film(); }
+
+RgbImage App::view() { return impl_->seen(); }
+
+RgbImage App::picture() const { return impl_->window ? impl_->window->read() : impl_->scene->read(); }
+
+const std::vector<Place>& App::places() const { return impl_->panels.host.places; }
+
+bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame); }
+
+bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
+
+double App::moves_until() const { return impl_->last_time + impl_->panels.moves_for(); }
+
+void App::tell(const std::string& what, bool is_error) { impl_->panels.host.tell(what, is_error); }
+
+bool App::wants_picture() { return std::exchange(impl_->wants_picture, false); }
+
+}  // namespace dreampm::play
