@@ -20,18 +20,18 @@ probes:
 
 int main() try {
   dreampm::Simulation simulation(dreampm::parse_scene(scene, "files"));
-  attach(simulation, dreampm::LedgerFile{"files/ledger.csv"});
-  attach(simulation, dreampm::ParticleFiles{"files/particles", {"velocity", "pressure"}});
-  attach(simulation, dreampm::ProbeFiles{"files/probes"});
-  attach(simulation, dreampm::CheckpointFiles{"files/checkpoint", 5});
+  attach(simulation, dreampm::LedgerFile{"written-files/ledger.csv"});
+  attach(simulation, dreampm::ParticleFiles{"written-files/particles", {"velocity", "pressure"}});
+  attach(simulation, dreampm::ProbeFiles{"written-files/probes"});
+  attach(simulation, dreampm::CheckpointFiles{"written-files/checkpoint", 5});
   simulation.advance_frames(12);
 
-  std::ifstream ledger("files/ledger.csv");
+  std::ifstream ledger("written-files/ledger.csv");
   int rows = -1;
   for (std::string line; std::getline(ledger, line);) ++rows;
   std::printf("%d rows of the ledger, one a frame\n", rows);
 
-  simulation.load("files/checkpoint/checkpoint_000010.yaml");
+  simulation.load("written-files/checkpoint/checkpoint_000010.yaml");
   std::printf("back at frame %d: the files go on from there\n", simulation.frame());
   simulation.advance_frames(3);
   return rows == 13 ? 0 : 1;

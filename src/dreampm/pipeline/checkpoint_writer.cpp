@@ -55,8 +55,8 @@ void CheckpointWriter<R>::write() {
   engine_.download(MatterFields::all);
   const World<R>& world = std::as_const(engine_).world();
   save_checkpoint(folder_ / numbered("checkpoint", world.frame, ".h5"), world,
-                  {scene_hash_, std::string(engine_.backend().name()), std::string(engine_.backend().isa()),
-                   totals_.carried(), totals_.particle_steps(), probes_.memories()});
+                  {by_.scene_hash, by_.backend, std::string(engine_.backend().isa()), totals_.carried(),
+                   totals_.particle_steps(), probes_.memories()});
   const auto files = checkpoints_in(folder_);
   for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
 }

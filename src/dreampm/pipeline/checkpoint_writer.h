@@ -40,13 +40,13 @@ class CheckpointWriter final : public Observer {
     int every = 0;  ///< frames; 0: only the last
     int last = 1;
   };
-  /// `totals`: of the same engine, added to it before.
-  CheckpointWriter(Engine<R>& engine, const FrameTotals<R>& totals, const ProbeSet<R>& probes, std::string scene_hash,
+  /// `totals`: of the same engine, added to it before. Of `by` the instruction set is the engine's.
+  CheckpointWriter(Engine<R>& engine, const FrameTotals<R>& totals, const ProbeSet<R>& probes, SavedBy by,
                    std::filesystem::path folder, const When& when)
       : engine_(engine),
         totals_(totals),
         probes_(probes),
-        scene_hash_(std::move(scene_hash)),
+        by_(std::move(by)),
         folder_(std::move(folder)),
         when_(when) {}
   /// One of the moment at hand.
@@ -58,7 +58,7 @@ class CheckpointWriter final : public Observer {
   Engine<R>& engine_;
   const FrameTotals<R>& totals_;
   const ProbeSet<R>& probes_;
-  std::string scene_hash_;
+  SavedBy by_;
   std::filesystem::path folder_;
   When when_;
 };

@@ -113,7 +113,8 @@ struct WatchedScene {
         ledger(scene.engine(), totals, task.options.folder / "ledger.csv"),
         record(scene.engine(), totals, ledger, task.options.folder, task.lock),
         strict(ledger),
-        checkpoints(scene.engine(), totals, scene.probes().set(), task.hash, task.checkpoints(),
+        checkpoints(scene.engine(), totals, scene.probes().set(),
+                    SavedBy{task.hash, task.options.backend, task.options.isa}, task.checkpoints(),
                     {task.scene.output.checkpoint_every, task.last}),
         progress(scene.engine(), totals) {
     scene.probes().add(
