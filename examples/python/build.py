@@ -10,7 +10,7 @@ def bowl():
     scene.time.frames = 24
     scene.materials.append(model.Material("water", "newtonian", dm.preset("newtonian", "water")))
     scene.materials[0].values["max_compression"] = 0.03  # a softer sound, longer steps
-    scene.bodies.append(model.Body("drop", "water", dm.sphere((0.2, 0.28, 0.2), 0.06)))
+    scene.bodies.append(model.Body("drop", "water", dm.sphere((0.2, 0.18, 0.2), 0.06)))
     scene.colliders.append(model.Collider("bowl", block, friction=0.2))
     scene.render.looks["bowl"] = model.Look(type="plastic", color=(0.62, 0.09, 0.07), roughness=0.2)
     scene.probes.append(model.Probe("level", form=model.HeightProbe(0.2, 0.2)))
@@ -23,7 +23,7 @@ def main():
     for line in dm.check(wrong):
         print("refused:", line)
     sim = dm.Simulation(dm.Scene(bowl()))
-    sim.advance_to(0.4)
+    sim.advance_to(0.6)
     water = sim.particles["water"].position
     inside = ((water[:, 0] - 0.2) ** 2 + (water[:, 2] - 0.2) ** 2 < 0.12**2).mean()
     print(f"t = {sim.time:.2f} s: {100 * inside:.0f} % of the water lies in the bowl, "

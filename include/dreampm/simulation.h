@@ -216,10 +216,11 @@ class Simulation {
   /// at first.
   void set_slack(std::string_view collider, double slack);
   /// A collider more. A rigid body falls, floats and meets the others from the next step on; others
-  /// stand until `set_motion`. Without a look it has that of scenes which say none. Throws
-  /// InputError for what `check` would not take, a name in use, one that lies in matter by more
-  /// than a tenth of a cell, and a rigid body that reaches as far outside of walls, into colliders
-  /// or other bodies.
+  /// move as they say, by the simulation's time, or stand until `set_motion`. The first rigid body
+  /// of a scene reads the meshes of its colliders again. Without a look it has that of scenes which
+  /// say none. Throws InputError for what `check` would not take, a name in use, one that holds
+  /// matter, which is of the start of a scene, one that lies in matter by more than a tenth of a
+  /// cell, and a rigid body that reaches as far outside of walls, into colliders or other bodies.
   void add(const model::Collider& collider, const std::optional<model::Look>& look = {});
   /// Holds a rigid body at a point from now on, until another grip of it or `let_go`. Throws
   /// InputError for a name that no rigid body has, or numbers out of range.

@@ -9,8 +9,10 @@ namespace {
 
 using Held = HeldSimulation;
 
-void add_collider(Held& held, const model::Collider& collider, const std::optional<model::Look>& look) {
-  held.call([&](Simulation& s) { s.add(collider, look); });
+void add_collider(Held& held, const Record<model::Collider>& collider, const std::optional<Record<model::Look>>& look) {
+  const model::Collider given = value_of(collider);
+  const std::optional<model::Look> looks = look ? std::optional(value_of(*look)) : std::nullopt;
+  held.call([&](Simulation& s) { s.add(given, looks); });
 }
 
 }  // namespace

@@ -42,12 +42,11 @@ class Section {
 constexpr const char* name_of_it = "By which the scene calls it.";
 
 template <class V>
-void key_struct(nb::module_& m, const char* name, const char* list) {
+void key_struct(nb::module_& m, const char* name) {
   Struct<Key<V>>(m, name, "A value at a time; between keys it changes linearly.")
       .member("t", &Key<V>::t, "[s]")
       .member("value", &Key<V>::value, "At that time.")
       .done();
-  nb::bind_vector<std::vector<Key<V>>>(m, list);
 }
 
 void space_structs(nb::module_& m) {
@@ -77,15 +76,14 @@ void space_structs(nb::module_& m) {
 }
 
 void motion_structs(nb::module_& m) {
-  key_struct<double>(m, "NumberKey", "NumberKeys");
-  key_struct<Vec3d>(m, "VectorKey", "VectorKeys");
+  key_struct<double>(m, "NumberKey");
+  key_struct<Vec3d>(m, "VectorKey");
   Struct<PoseKey>(m, "PoseKey", "Where a shape stands at a time, from where the scene gives it.")
       .member("t", &PoseKey::t, "[s]")
       .member("position", &PoseKey::position, "How far it is moved [m].")
       .member("rotate_axis", &PoseKey::rotate_axis, "Of any length above 0.")
       .member("rotate_angle", &PoseKey::rotate_angle, "[degrees], by the right hand about the axis.")
       .done();
-  nb::bind_vector<std::vector<PoseKey>>(m, "PoseKeys");
   Section<Motion>(m, "Motion", "How a shape moves: by keys, or at a constant velocity and spin.", "colliders.motion.")
       .key("keys", &Motion::keys)
       .own("smooth", &Motion::smooth, "With keys: it slows down at each; else it goes straight from key to key.")
@@ -107,7 +105,6 @@ void bodies_structs(nb::module_& m) {
       .key("transfer", &model::Material::transfer)
       .own("transfer_values", &model::Material::transfer_values, "By key: flip_blend, flip_memory, ...")
       .done();
-  nb::bind_vector<std::vector<model::Material>>(m, "Materials");
   Section<Body>(m, "Body", "Matter that is there at the start.", "bodies.")
       .own("name", &Body::name, name_of_it)
       .key("material", &Body::material)
@@ -118,7 +115,6 @@ void bodies_structs(nb::module_& m) {
       .key("pattern", &Body::pattern, "sample.pattern")
       .key("cut", &Body::cut)
       .done();
-  nb::bind_vector<std::vector<Body>>(m, "Bodies");
 }
 
 void colliders_structs(nb::module_& m) {
@@ -157,7 +153,6 @@ void colliders_structs(nb::module_& m) {
       .own("rigid", &model::Collider::rigid, "Matter and impacts move it.")
       .own("pin", &model::Collider::pin, "It only holds matter, and is not drawn.")
       .done();
-  nb::bind_vector<std::vector<model::Collider>>(m, "Colliders");
 }
 
 void inflow_structs(nb::module_& m) {
@@ -177,14 +172,11 @@ void inflow_structs(nb::module_& m) {
       .key("recycle", &Emitter::recycle)
       .key("motion", &Emitter::motion)
       .done();
-  nb::bind_vector<std::vector<Emitter>>(m, "Emitters");
   Section<Sink>(m, "Sink", "Where matter is taken out.", "sinks.")
       .own("name", &Sink::name, name_of_it)
       .key("shape", &Sink::shape)
       .key("motion", &Sink::motion)
       .done();
-  nb::bind_vector<std::vector<Sink>>(m, "Sinks");
-  nb::bind_map<VectorsByKey>(m, "Vectors");
   Section<model::ForceField>(m, "ForceField", "A force that acts on matter from afar: drag, wind, attractor or brush.",
                              "fields.")
       .own("name", &model::ForceField::name, name_of_it)
@@ -193,7 +185,6 @@ void inflow_structs(nb::module_& m) {
       .own("vectors", &model::ForceField::vectors, "By key of the type: velocity, point, ...")
       .key("box", &model::ForceField::box)
       .done();
-  nb::bind_vector<std::vector<model::ForceField>>(m, "ForceFields");
 }
 
 void probes_structs(nb::module_& m) {
@@ -239,7 +230,6 @@ void probes_structs(nb::module_& m) {
       .key("rate", &Probe::rate)
       .own("form", &Probe::form, "A HeightProbe, PressureProbe, ...")
       .done();
-  nb::bind_vector<std::vector<Probe>>(m, "Probes");
 }
 
 void render_structs(nb::module_& m) {
@@ -263,7 +253,6 @@ void render_structs(nb::module_& m) {
       .key("grain", &Look::grain)
       .key("radius", &Look::radius)
       .done();
-  nb::bind_map<LooksByName>(m, "Looks");
   Section<Camera>(m, "Camera", "Where the camera stands and looks.", "render.camera.")
       .own("fit_basin", &Camera::fit_basin, "It stands so that the box of the scene fills the picture; else from, to.")
       .key("azimuth", &Camera::azimuth)

@@ -8,13 +8,11 @@ std::string quoted_words(std::span<const std::string_view> words) {
   return text;
 }
 
-std::vector<std::string> Member<std::vector<std::string>>::from(nb::handle given, const std::string& name) {
-  if (nb::isinstance<nb::str>(given)) throw nb::type_error((name + ": a list of names, not one").c_str());
-  if (std::vector<std::string> names; nb::try_cast(given, names)) return names;
-  throw nb::type_error((name + ": must be a list of names").c_str());
-}
-nb::object Member<std::vector<std::string>>::to(std::vector<std::string>& member, nb::handle) {
-  return nb::tuple(nb::cast(member));
+void fail_member(const std::string& name, nb::handle given, const std::string& wanted) {
+  constexpr std::size_t most = 60;
+  std::string shown = nb::cast<std::string>(nb::repr(given));
+  if (shown.size() > most) shown = shown.substr(0, most) + "...";
+  throw nb::type_error((name + ": " + shown + ": must be " + wanted).c_str());
 }
 
 Values Member<Values>::from(nb::handle given, const std::string& name) {
@@ -28,29 +26,6 @@ Values Member<Values>::from(nb::handle given, const std::string& name) {
     values.set(key, number);
   }
   return values;
-}
-
-std::string Member<ProbeForm>::type() {
-  return "HeightProbe | PressureProbe | VelocityProbe | FluxProbe | RegionProbe | ForceProbe | ExtentProbe | "
-         "PointProbe | PoseProbe | InflowProbe";
-}
-namespace {
-template <std::size_t N = 0>
-ProbeForm form_from(nb::handle given, const std::string& name) {
-  if constexpr (N == std::variant_size_v<ProbeForm>) {
-    throw nb::type_error((name + ": must be a " + Member<ProbeForm>::type()).c_str());
-  } else {
-    using Form = std::variant_alternative_t<N, ProbeForm>;
-    if (nb::isinstance<Form>(given)) return nb::cast<Form>(given);
-    return form_from<N + 1>(given, name);
-  }
-}
-}  // namespace
-ProbeForm Member<ProbeForm>::from(nb::handle given, const std::string& name) { return form_from(given, name); }
-
-std::array<Wall, 6> Member<std::array<Wall, 6>>::from(nb::handle given, const std::string& name) {
-  if (std::array<Wall, 6> walls; nb::try_cast(given, walls)) return walls;
-  throw nb::type_error((name + ": must be six walls: x_min, x_max, y_min, y_max, z_min, z_max").c_str());
 }
 
 Box3d Member<Box3d>::from(nb::handle given, const std::string& name) {

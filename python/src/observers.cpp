@@ -42,7 +42,7 @@ void bind_observers(nb::module_& m) {
             new (self) CheckpointFiles{std::move(folder), every, keep};
           },
           nb::arg("folder"), nb::arg("every") = 10, nb::arg("keep") = 2,
-          "Every so many frames; the newest `keep` stay, 0: all.");
+          "After each `every` frames; the newest `keep` stay, 0: all.");
   const nb::object simulation = m.attr("Simulation");
   bind_attach<LedgerFile>(simulation, "Writes these files from now on, at the end of each frame.");
   bind_attach<ParticleFiles>(simulation, "The same of particles.");

@@ -179,16 +179,16 @@ void bind_particle_sets(nb::module_& m) {
 
 // ---- walls
 
-Wall wall(const Walls& part, const std::string& name) {
+nb::object wall(const Walls& part, const std::string& name) {
   const auto side = static_cast<Side>(number_of(part, name, "wall"));
-  return part.held().look([&](const Simulation& s) { return s.wall(side); });
+  return record_of(part.held().look([&](const Simulation& s) { return s.wall(side); }));
 }
 
 void set_wall(const Walls& part, const std::string& name, nb::handle value) {
   const auto side = static_cast<Side>(number_of(part, name, "wall"));
   Wall wall;
-  if (nb::isinstance<Wall>(value))
-    wall = nb::cast<Wall>(value);
+  if (nb::isinstance<Record<Wall>>(value))
+    wall = value_of(nb::cast<const Record<Wall>&>(value));
   else if (nb::isinstance<nb::str>(value))
     wall.type = Member<WallType>::from(value, "a wall's type");
   else if (nb::isinstance<nb::tuple>(value) && nb::len(value) == 2)
@@ -205,7 +205,7 @@ void bind_walls(nb::module_& m) {
       "sim.walls['x_max'] = 'open', sim.walls['y_min'] = ('separate', 0.3): a type (separate, slip, stick,\n"
       "open), and Coulomb's coefficient of friction. Not on periodic axes.",
       nb::type_slots(part_slots));
-  all.def("__getitem__", wall)
+  all.def("__getitem__", wall, nb::arg("name"), nb::sig("def __getitem__(self, name: str) -> model.Wall"))
       .def("__setitem__", set_wall, nb::arg("name"), nb::arg("wall"),
            nb::sig("def __setitem__(self, name: str, wall: str | tuple[str, float] | model.Wall) -> None"));
   as_mapping(all);

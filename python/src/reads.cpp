@@ -145,7 +145,7 @@ MaterialState material(Held& held, const std::string& name, const nb::kwargs& wi
 nb::dict brushes(Held& held) {
   nb::dict all;
   for (const std::string& name : held.look([](const Simulation& s) { return s.names().brushes; }))
-    all[name.c_str()] = held.look([&](const Simulation& s) { return *s.brush(name); });
+    all[name.c_str()] = record_of(held.look([&](const Simulation& s) { return *s.brush(name); }));
   return all;
 }
 

@@ -41,10 +41,10 @@ Scene built(nb::object text, const std::string& file, const std::string& variant
   if (text.is_none() == (sections.size() == 0))
     throw nb::type_error(
         "Scene(model), Scene(text), Scene(dict) or Scene(space=..., materials=..., bodies=...): one of them");
-  if (nb::isinstance<model::Scene>(text)) {
+  if (nb::isinstance<Record<model::Scene>>(text)) {
     if (!variant.empty() || !set.is_none())
       throw nb::type_error("Scene(model): change the model; variant and set are of files");
-    return Scene(nb::cast<model::Scene>(text), file == "scene" ? "" : file);
+    return Scene(value_of(nb::cast<const Record<model::Scene>&>(text)), file == "scene" ? "" : file);
   }
   if (text.is_none()) return parsed(text_of(sections), file, variant, set);
   if (nb::isinstance<nb::str>(text)) return parsed(nb::cast<std::string>(text), file, variant, set);
@@ -110,7 +110,7 @@ void bind_scene(nb::module_& m) {
       .def_prop_ro("frame_count", &Scene::frames, "Frame 1 is the start, frame n is at (n - 1)/fps.")
       .def_prop_ro("material_names", &Scene::materials)
       .def_prop_ro(
-          "model", [](const Scene& s) { return model::Scene(s.model()); }, nb::sig("def model(self) -> model.Scene"),
+          "model", [](const Scene& s) { return record_of(s.model()); }, nb::sig("def model(self) -> model.Scene"),
           "All that it says, as a copy that may be changed: Scene(model) checks it again.")
       .def("yaml", &Scene::yaml, "The whole scene as a scene file, every value explicit.")
       .def(
@@ -130,7 +130,7 @@ void bind_scene(nb::module_& m) {
       nb::arg("name"), nb::sig("def preset(type: str, name: str) -> model.Values"),
       "The values of a preset, as `dreampm materials TYPE` lists them: preset('newtonian', 'honey').");
   m.def(
-      "check", [](const model::Scene& model) { return check(model); }, nb::arg("model"),
+      "check", [](const Record<model::Scene>& model) { return check(value_of(model)); }, nb::arg("model"),
       nb::sig("def check(model: model.Scene) -> list[str]"),
       "What is wrong with a scene that a program built, a line each, by path; reads no file.");
 }

@@ -229,8 +229,12 @@ void bind_state(nb::class_<Held>& c) {
 
 void bind_edits(nb::class_<Held>& c) {
   c.def(
-       "add", [](Held& h, const model::Body& body) { h.call([&](Simulation& s) { s.add(body); }); }, nb::arg("body"),
-       nb::sig("def add(self, body: model.Body) -> None"),
+       "add",
+       [](Held& h, const Record<model::Body>& body) {
+         const model::Body given = value_of(body);
+         h.call([&](Simulation& s) { s.add(given); });
+       },
+       nb::arg("body"), nb::sig("def add(self, body: model.Body) -> None"),
        "Fills a shape with a material of the scene. Refuses a name in use, and a body that reaches outside of walls\n"
        "or into colliders.")
       .def("add_particles", add_particles, nb::arg("material"), nb::arg("positions"), nb::kw_only(),
@@ -252,16 +256,19 @@ void bind_edits(nb::class_<Held>& c) {
           "Takes out all particles whose centers lie inside; returns how many.")
       .def(
           "add_material",
-          [](Held& h, const model::Material& material, const std::optional<model::Look>& look) {
-            h.call([&](Simulation& s) { s.add_material(material, look); });
+          [](Held& h, const Record<model::Material>& material, const std::optional<Record<model::Look>>& look) {
+            const model::Material given = value_of(material);
+            const std::optional<model::Look> looks = look ? std::optional(value_of(*look)) : std::nullopt;
+            h.call([&](Simulation& s) { s.add_material(given, looks); });
           },
           nb::arg("material"), nb::kw_only(), nb::arg("look") = nb::none(),
           nb::sig("def add_material(self, material: model.Material, *, look: model.Look | None = None) -> None"),
           "A material more, of which there is no particle yet.")
       .def(
           "set_brush",
-          [](Held& h, const std::string& name, const Stroke& stroke) {
-            h.call([&](Simulation& s) { s.set_brush(name, stroke); });
+          [](Held& h, const std::string& name, const Record<Stroke>& stroke) {
+            const Stroke given = value_of(stroke);
+            h.call([&](Simulation& s) { s.set_brush(name, given); });
           },
           nb::arg("name"), nb::arg("stroke"),
           "Takes matter along until another stroke of the same name, or `lift_brush`.")

@@ -26,6 +26,12 @@ def test_sweep(tmp_path):
     assert len(fronts) == 5 and fronts == sorted(fronts, reverse=True) and fronts[0] > fronts[-1] + 0.1
 
 
+def test_build(tmp_path):
+    text = run("examples/python/build.py", tmp_path)
+    assert "refused: bodies.drop.material: no material 'watr'; did you mean 'water'?" in text
+    assert int(re.search(r"(\d+) % of the water", text)[1]) > 80
+
+
 def test_fit(tmp_path):
     assert float(run("examples/python/fit.py", tmp_path).split()[0]) == pytest.approx(20, rel=0.01)
 

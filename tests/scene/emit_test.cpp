@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "dreampm/base/file.h"
+#include "dreampm/scene/check.h"
 #include "dreampm/scene/parse.h"
 
 namespace dreampm::scene {
@@ -221,6 +222,10 @@ TEST(Emit, ReadsBackAsTheSameScene) {
   EXPECT_EQ(emit_scene(parsed(text)), text);
   for (const Part p : {Part::simulation, Part::particles, Part::surface, Part::render, Part::video})
     EXPECT_EQ(scene_hash(d, p), scene_hash(parsed(text), p));
+  const ParseResult as_model = check_scene(d);
+  EXPECT_TRUE(as_model.ok()) << as_model.text();
+  expect_same(as_model.scene, d);
+  EXPECT_EQ(emit_scene(as_model.scene), text);
 }
 
 TEST(Emit, AnotherSurfaceFormatIsTheSameMesh) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/file.h"
 #include "scenes.h"
 
@@ -73,6 +74,55 @@ TEST(Model, EditsReadNoFile) {
   s.remove_collider("shelf");
   s.step();
   EXPECT_EQ(s.gravity(), (Vec3d{0, -5, 0}));
+}
+
+TEST(Model, AColliderThatComesInMovesAsItSays) {
+  for (const std::string& backend : backend_names()) {
+    Simulation s(dam_and_jelly(), quiet(1, backend));
+    s.advance_to(0.02);
+    model::Collider lift{"lift", Shape::box({0.1, 0.17, 0.02}, {0.2, 0.18, 0.14})};
+    lift.motion.emplace().velocity = {0, 0.5, 0};
+    s.add(lift);
+    EXPECT_NEAR(s.collider("lift").pose.position.y, 0.5 * s.time(), 1e-9);
+    s.advance_to(0.05);
+    EXPECT_NEAR(s.collider("lift").pose.position.y, 0.5 * s.time(), 1e-9);
+    EXPECT_EQ(s.collider("lift").twist.velocity.y, 0.5);
+  }
+}
+
+TEST(Model, AColliderThatComesInTakesMatterOutWhereItSays) {
+  Simulation s(dam_and_jelly(), quiet());
+  model::Collider drain{"drain", Shape::box({0.2, 0, 0}, {0.24, 0.03, 0.16})};
+  drain.deletes = true;
+  s.add(drain);
+  s.advance_to(0.4);
+  EXPECT_GT(s.counts().drained, 10u);
+  EXPECT_THAT([&] { s.remove_collider("drain"); }, testing::ThrowsMessage<InputError>(testing::HasSubstr("is a sink")));
+}
+
+TEST(Model, AColliderThatIsRefusedChangesNothing) {
+  Simulation s(dam_and_jelly(), quiet());
+  s.add(model::Collider{.name = "crate",
+                        .shape = Shape::box({0.02, 0.14, 0.02}, {0.06, 0.18, 0.06}),
+                        .rigid = model::Rigid{.density = 300}});
+  s.step();
+  const auto before = s.hash();
+  const auto refused = [&](const model::Collider& c, const std::string& what) {
+    EXPECT_THAT([&] { s.add(c); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(what)));
+    EXPECT_EQ(s.hash(), before) << what;
+  };
+  refused({"stone", Shape::mesh("no/such/file.ply")}, "no/such/file.ply");
+  refused({.name = "stone",
+           .shape = Shape::mesh("no/such/file.ply", 0.05, {0.1, 0.18, 0.1}),
+           .rigid = model::Rigid{.density = 300}},
+          "file.ply");
+  refused({.name = "nail", .shape = Shape::sphere({0.1, 0.18, 0.1}, 0.01), .holds = true}, "holds the matter");
+  refused(
+      {.name = "two", .shape = Shape::box({0.03, 0.15, 0.03}, {0.07, 0.19, 0.07}), .rigid = model::Rigid{.density = 1}},
+      "starts");
+  refused({"wet", Shape::box({0, 0, 0}, {0.05, 0.05, 0.05})}, "particles lie inside of it");
+  s.step();
+  EXPECT_EQ(s.names().colliders, std::vector<std::string>{"crate"});
 }
 
 TEST(Model, WhatAnEditChangedIsInTheModel) {

@@ -97,6 +97,16 @@ std::string meaning_in(const MapInfo& map, std::string_view path) {
   return {};
 }
 
+/// Throws InputError where there are any.
+void refuse(const Problems& problems) {
+  ParseResult result;
+  result.problems = problems.list();
+  if (result.ok()) return;
+  std::string lines = result.text();
+  lines.pop_back();
+  throw InputError(lines);
+}
+
 /// Reads a text by `read`.
 template <class T, class Read>
 T parsed(std::string_view text, const std::string& name, const Read& read) {
@@ -105,12 +115,8 @@ T parsed(std::string_view text, const std::string& name, const Read& read) {
   const YamlNode node = read_yaml(text, name, problems);
   T out{};
   if (problems.errors() == 0) read(in, node, out);
-  ParseResult result;
-  result.problems = problems.list();
-  if (result.ok()) return out;
-  std::string lines = result.text();
-  lines.pop_back();
-  throw InputError(lines);
+  refuse(problems);
+  return out;
 }
 
 }  // namespace
@@ -124,6 +130,16 @@ ParseResult check_scene(const model::Scene& given) {
   result.scene.marks = given.marks;
   result.problems = problems.list();
   return result;
+}
+
+void check_shape(const Shape& shape, const std::string& name) {
+  Problems problems;
+  Reading in{problems, {}, asset_names(), Reading::Models::as_named};
+  Shape read;
+  read_shape(in, write_shape(shape), name + ".shape", ShapeUse::collider, read);
+  std::string lines;
+  for (const Problem& p : problems.list()) lines += (lines.empty() ? "" : "\n") + p.message;
+  if (!lines.empty()) throw InputError(lines);
 }
 
 std::string meaning_of(std::string_view path) { return meaning_in(scene_info(), path); }

@@ -12,6 +12,10 @@ namespace dreampm::scene {
 /// Reads no file.
 ParseResult check_scene(const model::Scene& given);
 
+/// Throws InputError for a shape that no collider may have; `name` is for the message. It may lie
+/// anywhere.
+void check_shape(const Shape& shape, const std::string& name);
+
 /// The sentence of a key of the scene's tables: "space.spacing", "bodies.velocity". Empty for one
 /// that there is not.
 std::string meaning_of(std::string_view path);

@@ -222,7 +222,7 @@ Field<Shape> container() {
       [](const Shape& s, const std::string& k, YamlNode& map) {
         const ContainerShape* c = std::get_if<ContainerShape>(&s.form);
         if (!c) return;
-        YamlNode both = write_shape(c->hollow.at(0));
+        YamlNode both = c->hollow.empty() ? YamlNode::map() : write_shape(c->hollow[0]);
         for (Entry& e : write_map(*c, container_schema()).entries) both.entries.push_back(std::move(e));
         map.put(k, std::move(both));
       }}

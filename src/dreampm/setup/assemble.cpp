@@ -193,17 +193,7 @@ void Assembly::place_colliders(std::span<const Collider> standing) {
       // By name: edits may have brought them in another order.
       const auto there =
           std::find_if(standing.begin(), standing.end(), [&](const Collider& now) { return now.name == c.name; });
-      if (there != standing.end()) {
-        out_.world.colliders.push_back(*there);
-        continue;
-      }
-      Collider& made = out_.world.colliders.emplace_back(
-          Collider{c.name, collider_region(c, scene_.space, files_), c.type, c.friction, c.sticky, c.holds});
-      made.path = motion_path(c.motion, c.shape, scene_.space.spacing, files_);
-      made.changing = mesh_sequence(c, scene_.space);
-      made.take_shape();
-      made.follow(0, 1 / scene_.time.fps);
-      made.surface_pose = made.pose;
+      out_.world.colliders.push_back(there != standing.end() ? *there : make_collider(c, scene_, 0, files_));
     } catch (const InputError& e) {
       errors_.push_back(fmt::format("{}: error: collider {}: {}", place(file_, scene_, c), c.name, e.what()));
     }

@@ -65,6 +65,19 @@ std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>
       MotionPath{motion.keys, motion.smooth, center, motion.velocity, motion.spin});
 }
 
+Collider make_collider(const model::Collider& given, const model::Scene& scene, double time, const Meshes& meshes) {
+  const model::Space& space = scene.space;
+  Collider made{given.name, collider_region(given, space, meshes), given.type, given.friction, given.sticky,
+                given.holds};
+  made.path = motion_path(given.motion, given.shape, space.spacing, meshes);
+  made.changing = mesh_sequence(given, space);
+  made.surface_time = time;
+  made.take_shape();
+  made.follow(time, 1 / scene.time.fps);
+  made.surface_pose = made.pose;
+  return made;
+}
+
 void Overlap::operator+=(const Overlap& other) {
   particles += other.particles;
   depth = std::max(depth, other.depth);

@@ -27,6 +27,10 @@ std::shared_ptr<const MeshSequence> mesh_sequence(const model::Collider& collide
 std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>& given, const Shape& shape,
                                               double spacing, const Meshes& meshes);
 
+/// A collider of the scene as it stands at that time [s]; no rigid body yet. Throws InputError for
+/// what cannot be read or encloses nothing.
+Collider make_collider(const model::Collider& given, const model::Scene& scene, double time, const Meshes& meshes);
+
 /// How much of a body's matter lies inside of a collider.
 struct Overlap {
   std::size_t particles = 0;

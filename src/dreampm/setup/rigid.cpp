@@ -41,10 +41,10 @@ MassSums mass_sums(const Region& region) {
   const Vec3d middle = box.center();
   MassSums sums;
   Vec3d first{};
-  Mat3d second{};
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  // second moments
   const auto middle_of = [&](double i, double j, double k) { return box.min + Vec3d{i, j, k} * step; };
   // Of a group of cells that no surface comes near, one distance says all.
-  constexpr int group = 8;
+  constexpr int group = 4;
   const double far = width + 0.5 * group * length(step) * steepest;
   const auto whole_part = [&](int i, int j, int k) -> std::optional<double> {
     const double distance = region.distance(middle_of(i + 0.5 * group, j + 0.5 * group, k + 0.5 * group));
@@ -69,14 +69,17 @@ MassSums mass_sums(const Region& region) {
         sums.volume += part;
         const Vec3d way = p - middle;
         first += way * part;
-        second = second + outer(way, way) * part;
-        // Of the cell itself.
-        second = second + Mat3d::diagonal(step.x * step.x, step.y * step.y, step.z * step.z) * (part / 12);
+        xy += way.x * way.y * part, xz += way.x * way.z * part, yz += way.y * way.z * part;
+        // With those of the cell itself.
+        xx = xx + way.x * way.x * part + step.x * step.x * (part / 12);
+        yy = yy + way.y * way.y * part + step.y * step.y * (part / 12);
+        zz = zz + way.z * way.z * part + step.z * step.z * (part / 12);
       }
   }
   if (!(sums.volume > 0)) return sums;
   const Vec3d off = first / sums.volume;
   sums.center = middle + off;
+  const Mat3d second{{xx, xy, xz, xy, yy, yz, xz, yz, zz}};
   const Mat3d about = second - outer(off, off) * sums.volume;
   sums.inertia = Mat3d::identity() * trace(about) - about;
   return sums;

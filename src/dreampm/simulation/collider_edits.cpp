@@ -32,10 +32,16 @@ void refuse_taken(const model::Scene& scene, const std::string& name) {
     fail_input("a material or collider of the name {} is there already: give another", name);
 }
 
-/// Makes the world's colliders those of the scene, in its order: one that the world has not is
-/// `fresh`. What goes by their numbers goes along.
+/// A collider that the world has not yet.
+struct Newcomer {
+  Collider collider;
+  CollisionShape collision;  ///< where rigid bodies are in the world
+};
+
+/// Makes the world's colliders those of the scene, in its order: one that the world has not is the
+/// newcomer, which else may be null. What goes by their numbers goes along.
 template <class R>
-void arrange(World<R>& world, const model::Scene& scene, const std::optional<Collider>& fresh) {
+void arrange(World<R>& world, const model::Scene& scene, const Newcomer* newcomer) {
   std::vector<Collider> colliders;
   std::vector<CollisionShape> collision;
   std::vector<std::optional<std::size_t>> to(world.colliders.size());
@@ -45,9 +51,8 @@ void arrange(World<R>& world, const model::Scene& scene, const std::optional<Col
     const auto old = static_cast<std::size_t>(known - world.colliders.begin());
     const bool is_known = known != world.colliders.end();
     if (is_known) to[old] = colliders.size();
-    if (!world.collision.empty())
-      collision.push_back(is_known ? world.collision[old] : collision_shape(given, scene.space));
-    colliders.push_back(is_known ? std::move(*known) : *fresh);
+    if (!world.collision.empty()) collision.push_back(is_known ? world.collision[old] : newcomer->collision);
+    colliders.push_back(is_known ? std::move(*known) : newcomer->collider);
   }
   std::erase_if(world.rigid, [&](const RigidBody& b) { return !to[b.collider]; });
   for (RigidBody& b : world.rigid) b.collider = *to[b.collider];
@@ -87,14 +92,17 @@ void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, co
     const Meshes files(Meshes::Say::keep);
     engine.download(MatterFields::all);
     World<R>& world = engine.world();
-    const Collider fresh{
-        given.name, collider_region(given, scene.space, files), given.type, given.friction, given.sticky, given.holds};
-    arrange(world, scene, fresh);
+    // What reads files comes first: it may throw.
+    Newcomer newcomer{make_collider(given, scene, world.time, files), {}};
+    std::vector<CollisionShape> of_all;  // where it is the first rigid body
+    if (!world.collision.empty())
+      newcomer.collision = collision_shape(given, scene.space);
+    else if (given.rigid)
+      for (const model::Collider& one : scene.colliders) of_all.push_back(collision_shape(one, scene.space));
+    arrange(world, scene, &newcomer);
     try {
       if (given.rigid) {
-        if (world.collision.empty())
-          for (const model::Collider& one : scene.colliders)
-            world.collision.push_back(collision_shape(one, scene.space));
+        if (world.collision.empty()) world.collision = std::move(of_all);
         std::vector<std::string> errors;
         make_rigid(world, c, given, scene.space, errors);
         if (!errors.empty()) throw InputError(fmt::format("{}: {}", what, fmt::join(errors, "\n")));
@@ -102,8 +110,9 @@ void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, co
                   [](const RigidBody& a, const RigidBody& b) { return a.collider < b.collider; });
       }
       refuse_overlap(world, c, what);
+      if (given.deletes) world.sinks.push_back({given.name, nullptr, c});
     } catch (...) {
-      arrange(world, impl.state.scene.model(), std::nullopt);  // as it was
+      arrange(world, impl.state.scene.model(), nullptr);  // as it was
       throw;
     }
     engine.colliders_changed();
@@ -123,7 +132,7 @@ void take_out(Simulation::Impl& impl, std::string_view name) {
   });
   impl.with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
-    arrange(engine.world(), next.model(), std::nullopt);
+    arrange(engine.world(), next.model(), nullptr);
     engine.colliders_changed();
   });
   impl.state.scene = next;
@@ -160,6 +169,8 @@ void Simulation::set_slack(std::string_view collider, double slack) {
 
 void Simulation::add(const model::Collider& collider, const std::optional<model::Look>& look) {
   refuse_taken(scene().model(), collider.name);
+  if (collider.pin || collider.holds)
+    fail_input("{} holds the matter that a scene begins with: give it with the scene, or set a brush", collider.name);
   const Scene next = impl_->edited([&](model::Scene& scene) {
     // As a scene file has them: colliders, rigid bodies, pins.
     const auto kind = [](const model::Collider& c) { return c.pin ? 2 : c.rigid ? 1 : 0; };

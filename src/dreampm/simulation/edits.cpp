@@ -8,6 +8,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/physics/transfers.h"
+#include "dreampm/scene/check.h"
 #include "dreampm/setup/body_checks.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/projection_checks.h"
@@ -28,15 +29,6 @@ model::Scene with_only(const Scene& scene, const model::Body& body) {
   alone.start.clear(), alone.emitters.clear(), alone.sinks.clear();
   alone.probes.clear();  // they may name bodies
   return Scene(std::move(alone), scene.file()).model();
-}
-
-/// Throws InputError for a shape that no collider may have; it may lie anywhere.
-void check_shape(const Scene& scene, const Shape& shape) {
-  model::Scene bare;
-  bare.space = scene.model().space, bare.materials = scene.model().materials;
-  bare.start = "nothing";
-  bare.colliders = {{.name = "region", .shape = shape}};
-  Scene(std::move(bare), scene.file());
 }
 
 /// Gives a parameter a value, or one of the keys of its transfer. One that is another way to say
@@ -306,7 +298,7 @@ void Simulation::add_particles(std::string_view material, std::span<const NewPar
 }
 
 std::size_t Simulation::remove(const Shape& shape) {
-  check_shape(scene(), shape);
+  scene::check_shape(shape, "remove");
   std::size_t taken = 0;
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     const Meshes files(Meshes::Say::keep);

@@ -9,6 +9,8 @@
 #include <chrono>
 #include <deque>
 #include <filesystem>
+#include <memory>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -17,10 +19,19 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
+#include "dreampm/gl/objects.h"
+#include "dreampm/play/model/open_file.h"
 #include "dreampm/play/model/playground.h"
+#include "dreampm/play/model/size_chooser.h"
 #include "dreampm/play/panels/imgui_text.h"
+#include "dreampm/play/panels/pictures.h"
 #include "dreampm/play/panels/style.h"
-#include "dreampm/play/window/app_impl.h"
+#include "dreampm/play/tools/drop.h"
+#include "dreampm/play/window/app.h"
+#include "dreampm/play/window/app_keys.h"
+#include "dreampm/play/window/last_seconds.h"
+#include "dreampm/play/window/recorder.h"
+#include "dreampm/play/window/view.h"
 
 namespace dreampm::play {
 namespace {
@@ -73,6 +84,75 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 
 }  // namespace
 
+struct App::Impl {
+  Impl(const Cursor::Post& post, int threads, std::string isa, bool offscreen);
+  ~Impl();
+
+  /// What is seen beside the panels, of both sides while materials are compared, with the legend of
+  /// its colors and its scale.
+  RgbImage seen();
+  /// What was drawn, into the film that the frame asks for, if it does.
+  void film(const Frame& frame, double time);
+  void end_film();
+  /// A film of the last seconds begins to be written, beside what goes on.
+  void save_last(const Frame& frame);
+  /// Draws some of it, as the camera stands now, for a part of a picture's time.
+  void go_on_with_last();
+  /// The sides of a frame into their framebuffers; with the ring of the brush, where there
+  /// is one.
+  void draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& mark);
+  // Of a picture, in this order.
+  void set_look(const Frame& frame, float to);
+  void feed_imgui(const Input& input, int width, int height);
+  void lay_out(const Frame& frame, int width, int height);
+  void move_cursor(const Frame& frame, const Input& input);
+  /// What tools do.
+  std::uint64_t use_tool(const Action& action) {
+    panels.note_use(action.verb);
+    return post(action);
+  }
+  /// Scenes, configs and records are opened; meshes fall in, of the chosen matter, over the pointer
+  /// at that place of the picture under it.
+  void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
+  KeyTarget keys() {
+    return {post, cursor, panels, wants_picture, [this](const Frame& f) { save_last(f); }};
+  }
+
+  Cursor::Post post;
+  Cursor cursor;
+  Panels panels;
+  View view;
+  Pictures pictures;
+  DrawingFacts facts;
+  const bool offscreen;
+  /// How wide the picture of a side is in one of `width` pixels.
+  static int side_width(const Frame& frame, int width) { return frame.other ? std::max(1, width / 2) : width; }
+  std::unique_ptr<gl::Framebuffer> scene, window;
+  std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
+  std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
+  bool over_second = false;                 ///< whether the pointer is, or was when a drag began
+  std::unique_ptr<Recorder> recorder;
+  LastSeconds last;
+  struct Saving {
+    Recorder to;
+    std::deque<LastSeconds::Shown> shown;
+    std::size_t next = 0;
+  };
+  std::unique_ptr<Saving> saving;       ///< the last seconds
+  std::string failed_film;              ///< its file
+  double last_time = -1, painted = -1;  ///< s, of the last input and picture
+  double shown_for = 0;                 ///< s, of the picture before the last
+  bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
+       wants_picture = false;
+  bool chooses_size = false;
+  SizeChooser chooser;
+  float scale = 0;
+  std::vector<int> late_releases;
+  int scene_width = 1, scene_height = 1;  ///< of the picture, or that of a side
+  int picture_width = 1;                  ///< of all sides
+  int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
+};
+
 App::Impl::Impl(const Cursor::Post& post_, int threads, std::string isa, bool offscreen_)
     : post(post_), cursor([this](const Action& a) { return use_tool(a); }), panels(post_), offscreen(offscreen_) {
   panels.host.pictures = &pictures;
@@ -100,6 +180,20 @@ App::Impl::~Impl() {
 App::App(Cursor::Post post, int threads, std::string isa, bool offscreen)
     : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
 App::~App() = default;
+
+void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
+  const double size = 2 * under.settings.radius;
+  const Hit hit =
+      pick(under, cursor.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
+  const Vec3d at = above(hit, under.domain, size, under.spacing);
+  for (const std::string& file : files) {
+    if (kind_of_file(file) == FileKind::mesh) {
+      post(drop_file(file, at, size));
+      continue;
+    }
+    panels.host.open_file(file);
+  }
+}
 
 void App::Impl::set_look(const Frame& frame, float to) {
   if (to == scale && frame.settings.dark == dark) return;
@@ -180,8 +274,8 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
   ImGui::NewFrame();
   a.lay_out(frame, width, height);
   // Dear ImGui wants text for a picture more than there is a field that takes it.
-  if (!ImGui::GetIO().WantTextInput || !ImGui::IsAnyItemActive()) a.keys(frame, input);
-  a.released_keys(frame, input);
+  if (!ImGui::GetIO().WantTextInput || !ImGui::IsAnyItemActive()) press_keys(a.keys(), frame, input);
+  release_keys(a.keys(), frame, input);
   a.move_cursor(frame, input);
   if (a.chooses_size && a.chooser.wants_small(frame, input.time)) {
     a.post({"size", {size_names().front()}});

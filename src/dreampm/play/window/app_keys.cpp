@@ -1,4 +1,5 @@
-// What keys do, and files that are dropped into the window.
+#include "dreampm/play/window/app_keys.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -7,13 +8,10 @@
 #include <functional>
 
 #include "dreampm/play/model/matter.h"
-#include "dreampm/play/model/open_file.h"
 #include "dreampm/play/model/playground.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/play/panels/key_help.h"
-#include "dreampm/play/tools/drop.h"
 #include "dreampm/play/tools/tool.h"
-#include "dreampm/play/window/app_impl.h"
 
 namespace dreampm::play {
 namespace {
@@ -23,28 +21,31 @@ constexpr double shake_strength = 12;
 
 constexpr int code(Key key) { return static_cast<int>(key); }
 
-}  // namespace
+void shake(const KeyTarget& target, double x, double z) {
+  target.post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}});
+}
 
 /// What a key does.
-struct App::Impl::KeyBinding {
+struct KeyBinding {
   enum class Control { any, with, without };
   int key;
-  std::function<void(Impl&, const Frame&)> press;
+  std::function<void(const KeyTarget&, const Frame&)> press;
   Control control = Control::any;
   bool repeats = false;  ///< whether it goes on while the key is held
-  std::function<void(Impl&, const Frame&)> release{};
+  std::function<void(const KeyTarget&, const Frame&)> release{};
 };
 
 /// Some keys, and what they do in words. Keys stand between backticks; `page`: what the guide says
 /// where that is more. Drags have no keys.
-struct App::Impl::KeyRow {
+struct KeyRow {
   std::string keys, what, page{};
   std::vector<KeyBinding> bindings{};
 };
 
-const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
+/// What keys do, and in words.
+const std::vector<KeyRow>& key_rows() {
   using Control = KeyBinding::Control;
-  static constexpr auto radius = [](Impl& a, const Frame& f) {
+  static constexpr auto radius = [](const KeyTarget& a, const Frame& f) {
     return a.panels.host.asked(f, "radius", f.settings.radius);
   };
   static const std::vector<KeyRow> all = [] {
@@ -54,7 +55,7 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
     for (const ToolInfo& tool : tool_buttons()) {
       if (tool.held_key != 0) {
         const auto hold = [name = tool.name](bool held) {
-          return [name, held](Impl& a, const Frame&) { a.cursor.hold(name, held); };
+          return [name, held](const KeyTarget& a, const Frame&) { a.cursor.hold(name, held); };
         };
         held_row = {fmt::format("hold `{}`", tool.held_key),
                     fmt::format("{} it where the pointer is", tool.name),
@@ -64,12 +65,14 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
       const auto index = static_cast<double>(of_tools.size());
       tool_letters += fmt::format("{}`{}`", of_tools.empty() ? "" : " ", tool.key);
       tool_list += fmt::format("{}{}", of_tools.empty() ? "" : ", ", tool.name);
-      of_tools.push_back({tool.key, [index](Impl& a, const Frame&) { a.set("tool", index); }, Control::without});
+      of_tools.push_back(
+          {tool.key, [index](const KeyTarget& a, const Frame&) { a.set("tool", index); }, Control::without});
     }
     for (const Matter& matter : matters()) {
       const std::size_t kind = of_matter.size();
       matter_list += fmt::format("{}{}", of_matter.empty() ? "" : ", ", matter.title);
-      of_matter.push_back({matter.key, [kind](Impl& a, const Frame& f) { a.panels.host.choose_matter(f, kind); }});
+      of_matter.push_back(
+          {matter.key, [kind](const KeyTarget& a, const Frame& f) { a.panels.host.choose_matter(f, kind); }});
     }
     return std::vector<KeyRow>{
         {"move", "push matter and rigid bodies"},
@@ -82,34 +85,34 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
         {"`[` `]`",
          "smaller, larger brush",
          {},
-         {{'[', [](Impl& a, const Frame& f) { a.set("radius", std::max(radius(a, f) / 1.25, 0.02)); }, Control::any,
-           true},
-          {']', [](Impl& a, const Frame& f) { a.set("radius", std::min(radius(a, f) * 1.25, 0.3)); }, Control::any,
-           true}}},
+         {{'[', [](const KeyTarget& a, const Frame& f) { a.set("radius", std::max(radius(a, f) / 1.25, 0.02)); },
+           Control::any, true},
+          {']', [](const KeyTarget& a, const Frame& f) { a.set("radius", std::min(radius(a, f) * 1.25, 0.3)); },
+           Control::any, true}}},
         {"arrows",
          "shake the box",
          {},
-         {{code(Key::left), [](Impl& a, const Frame&) { a.shake(-1, 0); }, Control::any, true},
-          {code(Key::right), [](Impl& a, const Frame&) { a.shake(1, 0); }, Control::any, true},
-          {code(Key::up), [](Impl& a, const Frame&) { a.shake(0, -1); }, Control::any, true},
-          {code(Key::down), [](Impl& a, const Frame&) { a.shake(0, 1); }, Control::any, true}}},
+         {{code(Key::left), [](const KeyTarget& a, const Frame&) { shake(a, -1, 0); }, Control::any, true},
+          {code(Key::right), [](const KeyTarget& a, const Frame&) { shake(a, 1, 0); }, Control::any, true},
+          {code(Key::up), [](const KeyTarget& a, const Frame&) { shake(a, 0, -1); }, Control::any, true},
+          {code(Key::down), [](const KeyTarget& a, const Frame&) { shake(a, 0, 1); }, Control::any, true}}},
         {"`K`, `X`",
          "compare with another matter; the other side",
          {},
          {{'K',
-           [](Impl& a, const Frame& f) {
+           [](const KeyTarget& a, const Frame& f) {
              a.post(f.other ? Action{"compare", {"off"}} : compare_with(f.settings.compare_with));
            }},
           {'X',
-           [](Impl& a, const Frame& f) {
+           [](const KeyTarget& a, const Frame& f) {
              if (f.other) a.post({"compare", {"side", f.side == 'A' ? "B" : "A"}});
            }}}},
         {"`Space`, `.`",
          "pause, one step",
          {},
-         {{' ', [](Impl& a, const Frame& f) { a.toggle(f, "paused", f.settings.paused); }},
+         {{' ', [](const KeyTarget& a, const Frame& f) { a.toggle(f, "paused", f.settings.paused); }},
           {'.',
-           [](Impl& a, const Frame& f) {
+           [](const KeyTarget& a, const Frame& f) {
              if (a.panels.host.asked(f, "paused", f.settings.paused) == 0) a.set("paused", 1);
              a.post({"step", {}});
            },
@@ -117,17 +120,17 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
         {"`R`",
          "begin anew",
          "begin anew, with the materials as they are set",
-         {{'R', [](Impl& a, const Frame&) { a.post({"restart", {}}); }}}},
+         {{'R', [](const KeyTarget& a, const Frame&) { a.post({"restart", {}}); }}}},
         {"`M`",
          "fewer or more particles: small, medium, large",
          "begin anew with fewer or more particles: small, medium, large",
-         {{'M',
-           [](Impl& a, const Frame& f) { a.post({"size", {size_names().at((f.size + 1) % size_names().size())}}); }}}},
+         {{'M', [](const KeyTarget& a,
+                   const Frame& f) { a.post({"size", {size_names().at((f.size + 1) % size_names().size())}}); }}}},
         {fmt::format("`{}`", solver_key),
          "the other solver: short steps of all matter, or large ones of liquids",
          {},
          {{solver_key,
-           [](Impl& a, const Frame& f) {
+           [](const KeyTarget& a, const Frame& f) {
              if (f.no_other.empty())
                a.post({"solver", {solver_names().at(1 - f.solver)}});
              else
@@ -136,25 +139,31 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
         {"`Ctrl O`",
          "open a scene, config, record or mesh",
          {},
-         {{'O', [](Impl& a, const Frame&) { a.panels.host.asks_for_file = true; }, Control::with}}},
+         {{'O', [](const KeyTarget& a, const Frame&) { a.panels.host.asks_for_file = true; }, Control::with}}},
         {"`Ctrl Z`, `Ctrl Y`",
          "undo, redo",
          {},
-         {{'Z', [](Impl& a, const Frame&) { a.post({"undo", {}}); }, Control::with, true},
-          {'Y', [](Impl& a, const Frame&) { a.post({"redo", {}}); }, Control::with, true}}},
-        {"`F`", "the first view again", {}, {{'F', [](Impl& a, const Frame& f) { a.cursor.reset_camera(f); }}}},
-        {"`B`", "dark or light", {}, {{'B', [](Impl& a, const Frame& f) { a.toggle(f, "dark", f.settings.dark); }}}},
+         {{'Z', [](const KeyTarget& a, const Frame&) { a.post({"undo", {}}); }, Control::with, true},
+          {'Y', [](const KeyTarget& a, const Frame&) { a.post({"redo", {}}); }, Control::with, true}}},
+        {"`F`",
+         "the first view again",
+         {},
+         {{'F', [](const KeyTarget& a, const Frame& f) { a.cursor.reset_camera(f); }}}},
+        {"`B`",
+         "dark or light",
+         {},
+         {{'B', [](const KeyTarget& a, const Frame& f) { a.toggle(f, "dark", f.settings.dark); }}}},
         {"`Tab`",
          "hide the panels",
          {},
-         {{code(Key::tab), [](Impl& a, const Frame&) { a.panels.shown = !a.panels.shown; }}}},
+         {{code(Key::tab), [](const KeyTarget& a, const Frame&) { a.panels.shown = !a.panels.shown; }}}},
         {"`F6`",
          "controls by keyboard: arrows, Space; Esc ends it",
          "controls without a mouse: arrows go from one to the next, `Space` takes hold of a slider or presses, arrows "
          "move it, `Esc` lets go, and then ends this",
-         {{code(Key::f6), [](Impl& a, const Frame&) { a.panels.host.by_keyboard = a.panels.shown = true; }},
+         {{code(Key::f6), [](const KeyTarget& a, const Frame&) { a.panels.host.by_keyboard = a.panels.shown = true; }},
           {code(Key::escape),
-           [](Impl& a, const Frame&) {
+           [](const KeyTarget& a, const Frame&) {
              if (a.panels.close_menus()) return;
              a.panels.host.help = false;
              // The first one lets go of a slider.
@@ -163,28 +172,28 @@ const std::vector<App::Impl::KeyRow>& App::Impl::key_rows() {
         {"`F12`",
          "save a picture",
          "save a picture, `dreampm-001.png`, with its legend and scale",
-         {{code(Key::f12), [](Impl& a, const Frame&) { a.wants_picture = true; }}}},
+         {{code(Key::f12), [](const KeyTarget& a, const Frame&) { a.wants_picture = true; }}}},
         {"`V`",
          "film the picture, until V again",
          "film the picture, until `V` again",
-         {{'V', [](Impl& a, const Frame& f) { a.panels.host.toggle_film(f); }}}},
+         {{'V', [](const KeyTarget& a, const Frame& f) { a.panels.host.toggle_film(f); }}}},
         {"`L`",
          "save the last five seconds as a film",
          "save the last five seconds as a film, `dam-break-last-001.mp4`, seen from where the camera stands now; the "
          "window says when it is there",
-         {{'L', [](Impl& a, const Frame& f) { a.save_last(f); }}}},
+         {{'L', [](const KeyTarget& a, const Frame& f) { a.save_last(f); }}}},
         {"`F1`",
          "this page",
          "these keys",
-         {{code(Key::f1), [](Impl& a, const Frame&) { a.panels.host.help = !a.panels.host.help; }}}},
+         {{code(Key::f1), [](const KeyTarget& a, const Frame&) { a.panels.host.help = !a.panels.host.help; }}}},
     };
   }();
   return all;
 }
 
-const std::vector<KeyHelp>& key_help() { return App::Impl::key_words(); }
+}  // namespace
 
-const std::vector<KeyHelp>& App::Impl::key_words() {
+const std::vector<KeyHelp>& key_help() {
   static const std::vector<KeyHelp> all = [] {
     std::vector<KeyHelp> words;
     for (const KeyRow& row : key_rows()) {
@@ -197,45 +206,28 @@ const std::vector<KeyHelp>& App::Impl::key_words() {
   return all;
 }
 
-void App::Impl::shake(double x, double z) {
-  post({"shake", {text_of(x * shake_strength), "0", text_of(z * shake_strength)}});
-}
-
-void App::Impl::keys(const Frame& frame, const Input& input) {
+void press_keys(const KeyTarget& target, const Frame& frame, const Input& input) {
   using Control = KeyBinding::Control;
   const std::array<int, 6> of_controls{' ',           code(Key::left), code(Key::right),
                                        code(Key::up), code(Key::down), code(Key::tab)};
   const auto press = [&](int key, bool again) {
-    if (panels.host.by_keyboard && std::find(of_controls.begin(), of_controls.end(), key) != of_controls.end()) return;
+    if (target.panels.host.by_keyboard && std::find(of_controls.begin(), of_controls.end(), key) != of_controls.end())
+      return;
     for (const KeyRow& row : key_rows())
       for (const KeyBinding& b : row.bindings)
         if (b.key == key && (b.control == Control::any || (b.control == Control::with) == input.control) &&
             (b.repeats || !again))
-          b.press(*this, frame);
+          b.press(target, frame);
   };
   for (const int key : input.repeated) press(key, true);
   for (const int key : input.pressed) press(key, false);
 }
 
-void App::Impl::released_keys(const Frame& frame, const Input& input) {
+void release_keys(const KeyTarget& target, const Frame& frame, const Input& input) {
   for (const int key : input.released)
     for (const KeyRow& row : key_rows())
       for (const KeyBinding& b : row.bindings)
-        if (b.key == key && b.release) b.release(*this, frame);
-}
-
-void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {
-  const double size = 2 * under.settings.radius;
-  const Hit hit =
-      pick(under, cursor.seen_by().ray(static_cast<float>(x), static_cast<float>(y), scene_width, scene_height));
-  const Vec3d at = above(hit, under.domain, size, under.spacing);
-  for (const std::string& file : files) {
-    if (kind_of_file(file) == FileKind::mesh) {
-      post(drop_file(file, at, size));
-      continue;
-    }
-    panels.host.open_file(file);
-  }
+        if (b.key == key && b.release) b.release(target, frame);
 }
 
 }  // namespace dreampm::play
