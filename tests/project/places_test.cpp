@@ -81,5 +81,18 @@ TEST_F(Places, AColumnOfTheLedgerIsItsMemberWithARowAndItsValue) {
                 UnorderedElementsAre("src/dreampm/io/ledger_columns.h", "src/dreampm/run/ledger_row.cpp"));
 }
 
+TEST_F(Places, ASolidShapeIsAFileAndTwoRows) {
+  // What Bullet has a form of is there besides, and a tool that pours a disc.
+  EXPECT_THAT(of({"CylinderShape"}),
+              UnorderedElementsAre("src/dreampm/geometry/solids/cylinder.cpp", "src/dreampm/geometry/solids/solid.h",
+                                   "src/dreampm/scene/shapes.cpp", "src/dreampm/rigid/bullet_forms.cpp",
+                                   "src/dreampm/rigid/exact_forms.h", "src/dreampm/play/tools/pour.cpp"));
+}
+
+TEST_F(Places, ALookIsReadInOnePlaceAndTracedFromOne) {
+  for (const char* look : {"LookType::wood", "LookType::plastic"})
+    EXPECT_THAT(of({look}), UnorderedElementsAre("src/dreampm/scene/look.cpp", "src/dreampm/render/looks.cpp"));
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -11,6 +11,8 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/cell_fraction.h"
 #include "dreampm/geometry/container.h"
+#include "dreampm/geometry/solids/region_parts.h"
+#include "dreampm/geometry/solids/solid.h"
 #include "dreampm/math/mat3.h"
 
 namespace dreampm {
@@ -18,19 +20,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Box3d box_of(const Vec3d& low, const Vec3d& high) {
-  Box3d box;
-  box.min = low, box.max = high;
-  return box;
-}
 bool finite(const Box3d& box) { return is_finite(box.min) && is_finite(box.max); }
 
-/// Calls that the compiler makes vectors of.
-template <class Distance>
-void for_points(const PointColumns& points, double* to, const Distance& distance) {
-  const double *const x = points.at[0], *const y = points.at[1], *const z = points.at[2];
-  for (std::size_t i = 0; i < points.count; ++i) to[i] = distance(Vec3d{x[i], y[i], z[i]});
-}
 /// Calls body(points of a part, where it begins) for parts as long as `work_length`.
 constexpr std::size_t work_length = 64;
 template <class Body>
@@ -40,74 +31,6 @@ void for_parts(const PointColumns& points, const Body& body) {
                       std::min(work_length, points.count - begin)},
          begin);
 }
-
-class Ball final : public Region {
- public:
-  explicit Ball(double radius) : radius_(radius) {}
-  double distance(const Vec3d& p) const override { return length(p) - radius_; }
-  void distances(const PointColumns& points, double* to) const override {
-    for_points(points, to, [r = radius_](const Vec3d& p) { return length(p) - r; });
-  }
-  Vec3d normal(const Vec3d& p) const override { return length2(p) > 0 ? normalized(p) : Vec3d{0, 1, 0}; }
-  Box3d bounds() const override { return box_of({-radius_, -radius_, -radius_}, {radius_, radius_, radius_}); }
-
- private:
-  double radius_;
-};
-
-/// Region::normal's differences over this, on either side [m]: rounding and curvature both stay far
-/// below what friction or the eye resolves.
-constexpr double normal_step = 1e-6;
-Vec3d unit_gradient(const Vec3d& g) { return length2(g) > 0 ? normalized(g) : Vec3d{0, 1, 0}; }
-
-class Cuboid final : public Region {
- public:
-  explicit Cuboid(const Vec3d& size) : half_(size * 0.5) {}
-  double distance(const Vec3d& p) const override { return from(half_, p); }
-  void distances(const PointColumns& points, double* to) const override {
-    for_points(points, to, [half = half_](const Vec3d& p) { return from(half, p); });
-  }
-  /// To the bits of Region::normal, which asks six times.
-  Vec3d normal(const Vec3d& p) const override {
-    constexpr double h = normal_step;
-    const Vec3d q{std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};
-    // Where one face is nearer than all others by more than the step the others change nothing.
-    const int a = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
-    const double others = std::max(q[(a + 1) % 3], q[(a + 2) % 3]), least = std::min(q[a], 0.0);
-    const bool alone = others < least - 4 * h;
-    Vec3d g;
-    for (int k = 0; k < 3; ++k) {
-      if (alone && k != a) continue;
-      Vec3d step;
-      step[k] = h;
-      g[k] = Cuboid::distance(p + step) - Cuboid::distance(p - step);
-    }
-    return unit_gradient(g);
-  }
-  Box3d bounds() const override { return box_of(-half_, half_); }
-
- private:
-  static double from(const Vec3d& half, const Vec3d& p) {
-    const Vec3d q{std::abs(p.x) - half.x, std::abs(p.y) - half.y, std::abs(p.z) - half.z};
-    const double inside = std::min(std::max(std::max(q.x, q.y), q.z), 0.0);
-    return length(max(q, Vec3d{})) + inside;
-  }
-  Vec3d half_;
-};
-
-class Cylinder final : public Region {
- public:
-  Cylinder(double radius, double height) : radius_(radius), half_(height * 0.5) {}
-  double distance(const Vec3d& p) const override {
-    const double side = std::sqrt(p.x * p.x + p.z * p.z) - radius_, end = std::abs(p.y) - half_;
-    const double a = std::max(side, 0.0), b = std::max(end, 0.0);
-    return std::sqrt(a * a + b * b) + std::min(std::max(side, end), 0.0);
-  }
-  Box3d bounds() const override { return box_of({-radius_, -half_, -radius_}, {radius_, half_, radius_}); }
-
- private:
-  double radius_, half_;
-};
 
 class HalfSpace final : public Region {
  public:
@@ -165,28 +88,15 @@ class Moved final : public Region {
   bool turned_;
 };
 
-void want_positive(double value, const char* what) {
-  if (!(value > 0) || !std::isfinite(value)) fail_input("{} is {}: a length above 0 m is wanted", what, value);
-}
-
 struct MakeForm {
   double voxel;
   const MeshRegions& meshes;
   double reach;
   using Made = std::shared_ptr<const Region>;
 
-  Made operator()(const BoxShape& s) const {
-    for (int i = 0; i < 3; ++i) want_positive(s.size[i], "a side of a box");
-    return std::make_shared<Cuboid>(s.size);
-  }
-  Made operator()(const SphereShape& s) const {
-    want_positive(s.radius, "the radius of a sphere");
-    return std::make_shared<Ball>(s.radius);
-  }
-  Made operator()(const CylinderShape& s) const {
-    want_positive(s.radius, "the radius of a cylinder");
-    want_positive(s.height, "the height of a cylinder");
-    return std::make_shared<Cylinder>(s.radius, s.height);
+  template <IsSolid Form>
+  Made operator()(const Form& form) const {
+    return solid(form)->region();
   }
   Made operator()(const PlaneShape& s) const {
     if (!is_finite(s.normal) || !is_finite(s.point) || length2(s.normal) == 0)

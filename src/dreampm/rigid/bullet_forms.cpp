@@ -6,6 +6,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/rigid/bullet_vectors.h"
+#include "dreampm/rigid/exact_forms.h"
 
 namespace dreampm {
 namespace {
@@ -46,7 +47,7 @@ Hull hull_of(const TriMesh& mesh) {
   return hull;
 }
 
-/// Makes the form of each kind of shape: one that is new does not compile until it is here.
+/// Makes the form of each kind of shape: that of Bullet where it has one, else of the mesh.
 struct MakeForm {
   const CollisionShape& collision;
   bool rigid;
@@ -63,9 +64,11 @@ struct MakeForm {
     form.shape = std::make_unique<btStaticPlaneShape>(bullet(n), 0);
     form.placement = {plane.point, {}};
   }
-  void operator()(const MeshShape&) const { surface(); }
-  void operator()(const BooleanShape&) const { surface(); }
-  void operator()(const ContainerShape&) const { surface(); }
+  template <class Other>
+  void operator()(const Other&) const {
+    static_assert(!is_exact_form<Other>);
+    surface();
+  }
   void operator()(const PointsShape&) const { fail_input("a cloud of points has no surface that bodies could meet"); }
 
   /// As a body its convex hull, or by distance where that holds a hollow; else its triangles.

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "dreampm/contact/body_surface.h"
+#include "dreampm/geometry/solids/solid.h"
 #include "dreampm/rigid/bullet_forms.h"
 #include "dreampm/rigid/bullet_vectors.h"
 
@@ -14,8 +15,6 @@ namespace {
 /// Contact points of a pair are kept apart by where their normals point: Bullet keeps four of each
 /// list, which are enough for a face and too few for what a hollow holds from all sides.
 constexpr std::size_t sides = 6;
-/// Points about the rim of a cylinder.
-constexpr int rim_points = 24;
 
 std::size_t side_of(const btVector3& n) {
   const int axis = n.closestAxis();
@@ -113,22 +112,12 @@ btCollisionAlgorithmCreateFunc* DistanceConfiguration::getCollisionAlgorithmCrea
 }
 
 std::vector<Vec3d> corner_points(const CollisionShape& collision, const Vec3d& corner) {
-  const Pose placed = placement_of(collision.shape);
-  const auto& form = collision.shape.form;
   std::vector<Vec3d> points;
   if (collision.mesh) {
     for (const Vec3f& v : collision.mesh->vertices) points.push_back(static_cast<Vec3d>(v) + corner);
-  } else if (std::holds_alternative<SphereShape>(form)) {
-    points.push_back(placed.position);
-  } else if (const auto* box = std::get_if<BoxShape>(&form)) {
-    for (int n = 0; n < 8; ++n)
-      points.push_back(placed(box->size * Vec3d{n & 4 ? 0.5 : -0.5, n & 2 ? 0.5 : -0.5, n & 1 ? 0.5 : -0.5}));
-  } else if (const auto* cylinder = std::get_if<CylinderShape>(&form)) {
-    for (int n = 0; n < 2 * rim_points; ++n) {
-      const double angle = std::numbers::pi * (n / 2) / (rim_points / 2);
-      points.push_back(placed(
-          {cylinder->radius * std::cos(angle), (n % 2 - 0.5) * cylinder->height, cylinder->radius * std::sin(angle)}));
-    }
+  } else if (const auto solid = solid_of(collision.shape)) {
+    const Pose placed = placement_of(collision.shape);
+    for (const Vec3d& p : solid->corners()) points.push_back(placed(p));
   }
   return points;
 }

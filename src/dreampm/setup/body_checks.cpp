@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dreampm/geometry/solids/solid.h"
 #include "dreampm/setup/place.h"
 #include "dreampm/setup/round_down.h"
 
@@ -16,11 +17,7 @@ namespace {
 
 /// The volume that the particles of a shape should have; 0 where it would take too long to find.
 double shape_volume(const Shape& shape, const Region& region, double spacing, const Meshes& meshes) {
-  if (const auto* b = std::get_if<BoxShape>(&shape.form)) return b->size.x * b->size.y * b->size.z;
-  if (const auto* s = std::get_if<SphereShape>(&shape.form))
-    return 4.0 / 3 * std::numbers::pi * s->radius * s->radius * s->radius;
-  if (const auto* c = std::get_if<CylinderShape>(&shape.form))
-    return std::numbers::pi * c->radius * c->radius * c->height;
+  if (const auto solid = solid_of(shape)) return solid->volume();
   if (const auto* m = std::get_if<MeshShape>(&shape.form)) {
     const MeshLook look = meshes.look(*m);
     return look.volume ? *look.volume : level_set_volume(*meshes.regions()(*m, spacing, 0));

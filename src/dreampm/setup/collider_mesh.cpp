@@ -5,6 +5,8 @@
 #include <numbers>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/geometry/solids/facets.h"
+#include "dreampm/geometry/solids/solid.h"
 #include "dreampm/import/import.h"
 #include "dreampm/level_set/level_set.h"
 #include "dreampm/level_set/shell.h"
@@ -14,76 +16,6 @@
 
 namespace dreampm {
 namespace {
-
-/// A polygon with vertices of its own: flat. Counter-clockwise seen from outside.
-void add_polygon(TriMesh& mesh, const std::vector<Vec3d>& corners) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3d& c : corners) mesh.vertices.push_back(static_cast<Vec3f>(c));
-  for (std::uint32_t k = 2; k < corners.size(); ++k) mesh.triangles.push_back({first, first + k - 1, first + k});
-}
-
-TriMesh box(const Vec3d& size) {
-  TriMesh mesh;
-  const Vec3d h = size * 0.5;
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int sign : {-1, 1}) {
-      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-      std::vector<Vec3d> corners(4);
-      for (std::size_t k = 0; k < 4; ++k) {
-        corners[k][axis] = sign * h[axis];
-        corners[k][u] = (k == 1 || k == 2 ? 1 : -1) * h[u];
-        corners[k][v] = (k >= 2 ? 1 : -1) * h[v];
-      }
-      if (sign < 0) std::reverse(corners.begin(), corners.end());
-      add_polygon(mesh, corners);
-    }
-  return mesh;
-}
-
-constexpr std::uint32_t around = 96;
-
-Vec3d on_circle(std::uint32_t i) {
-  const double a = 2 * std::numbers::pi * (i % around) / around;
-  return {std::cos(a), 0, -std::sin(a)};
-}
-
-TriMesh ball(double radius) {
-  constexpr std::uint32_t rows = around / 2;
-  TriMesh mesh;
-  for (std::uint32_t j = 0; j <= rows; ++j)
-    for (std::uint32_t i = 0; i < around; ++i) {
-      const double t = std::numbers::pi * j / rows;
-      mesh.vertices.push_back(static_cast<Vec3f>((on_circle(i) * std::sin(t) + Vec3d{0, std::cos(t), 0}) * radius));
-    }
-  for (std::uint32_t j = 0; j < rows; ++j)
-    for (std::uint32_t i = 0; i < around; ++i) {
-      const std::uint32_t a = j * around + i, b = j * around + (i + 1) % around;
-      if (j > 0) mesh.triangles.push_back({a, b + around, b});
-      if (j + 1 < rows) mesh.triangles.push_back({a, a + around, b + around});
-    }
-  return mesh;
-}
-
-TriMesh cylinder(double radius, double height) {
-  TriMesh mesh;
-  const Vec3d up{0, 0.5 * height, 0};
-  for (const int end : {-1, 1})
-    for (std::uint32_t i = 0; i < around; ++i)
-      mesh.vertices.push_back(static_cast<Vec3f>(on_circle(i) * radius + up * end));
-  for (std::uint32_t i = 0; i < around; ++i) {
-    const std::uint32_t j = (i + 1) % around;
-    mesh.triangles.push_back({i, j, around + j});
-    mesh.triangles.push_back({i, around + j, around + i});
-  }
-  std::vector<Vec3d> top, bottom;
-  for (std::uint32_t i = 0; i < around; ++i) {
-    top.push_back(on_circle(i) * radius + up);
-    bottom.push_back(on_circle(around - i) * radius - up);
-  }
-  add_polygon(mesh, top);
-  add_polygon(mesh, bottom);
-  return mesh;
-}
 
 /// A mesh from a file, sized and placed in double, counted from `shift`: its own coordinates may be
 /// large.
@@ -197,14 +129,8 @@ TriMesh drawn_shell(const Shape& shape, double thickness, double voxel, const Bo
 
 TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& shift) {
   TriMesh mesh;
-  if (const auto* b = std::get_if<BoxShape>(&shape.form))
-    mesh = box(b->size);
-  else if (const auto* s = std::get_if<SphereShape>(&shape.form))
-    mesh = ball(s->radius);
-  else if (const auto* c = std::get_if<CylinderShape>(&shape.form))
-    mesh = cylinder(c->radius, c->height);
-  else if (const auto* m = std::get_if<MeshShape>(&shape.form))
-    return imported(*m, shape, shift);
+  if (const auto solid = solid_of(shape)) mesh = solid->mesh();
+  if (const auto* m = std::get_if<MeshShape>(&shape.form)) return imported(*m, shape, shift);
   if (!mesh.vertices.empty()) {
     place(mesh, shape, shift);
     return mesh;

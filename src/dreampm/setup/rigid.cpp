@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/rigid/exact_forms.h"
 #include "dreampm/setup/collider_mesh.h"
 #include "dreampm/setup/colliders.h"
 #include "dreampm/setup/place.h"
@@ -85,11 +86,6 @@ MassSums mass_sums(const Region& region) {
   return sums;
 }
 
-bool has_own_form(const Shape& shape) {
-  return std::holds_alternative<BoxShape>(shape.form) || std::holds_alternative<SphereShape>(shape.form) ||
-         std::holds_alternative<CylinderShape>(shape.form) || std::holds_alternative<PlaneShape>(shape.form);
-}
-
 /// How deep a body lies in another collider [m], by samples over its bounds.
 double depth_in(const Collider& body, const Collider& other) {
   constexpr int samples = 20;
@@ -110,7 +106,7 @@ double depth_in(const Collider& body, const Collider& other) {
 CollisionShape collision_shape(const model::Collider& given, const model::Space& space) {
   CollisionShape shape{given.shape, nullptr, !given.pin};
   if (given.sequence) return shape;  // met by the distances of the collider
-  if (given.thickness || !has_own_form(given.shape)) {
+  if (given.thickness || !has_exact_form(given.shape)) {
     const Box3d room{space.min, space.end()};
     shape.mesh =
         std::make_shared<const TriMesh>(collider_mesh(given.shape, 0.5 * space.dx(), room, space.min, given.thickness));
