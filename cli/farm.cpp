@@ -29,8 +29,9 @@ void FarmArguments::add_to(CLI::App& verb, bool required) {
     kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : ", ", f.name, f.about);
   }
   CLI::Option* to = verb.add_option("--to", options.to, kinds)->required(required)->check(CLI::IsMember(names));
-  CLI::Option* chunk =
-      verb.add_option("--chunk", options.chunk, "frames a task")->capture_default_str()->transform(whole_number(1, 1000000));
+  CLI::Option* chunk = verb.add_option("--chunk", options.chunk, "frames a task")
+                           ->capture_default_str()
+                           ->transform(whole_number(1, 1000000));
   if (!required) chunk->needs(to);
   add_isa(verb, options.isa);
   add_threads(verb, options.threads);
@@ -48,7 +49,7 @@ int write_farm(const FarmVerb& a) {
   const model::Scene scene = a.scene.load();
   farm::FarmOptions options = a.farm.options;
   options.folder = a.out.empty() ? scene.output.folder : a.out;
-  options.program = own_program();
+  options.program = own_program(), options.source = a.scene.file;
   const farm::WrittenJob job = farm::write_job(scene, options);
   info("{} frames in chunks of {}; start it by: {}", scene.time.frames, options.chunk, job.start);
   fmt::print("{}\n", job.file.string());

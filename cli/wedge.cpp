@@ -17,7 +17,8 @@ struct WedgeVerb {
 
 /// The scene of one run. Throws InputError with every error.
 model::Scene scene_of_run(const WedgeVerb& a, const farm::Wedge& wedge, const farm::WedgeRun& run) {
-  scene::ParseOptions options{.variant = a.scene.variant, .overrides = a.scene.overrides, .overrides_from = "", .assets = asset_names()};
+  scene::ParseOptions options{
+      .variant = a.scene.variant, .overrides = a.scene.overrides, .overrides_from = "", .assets = asset_names()};
   const std::vector<std::string> settings = run.settings(wedge.keys);
   options.overrides.insert(options.overrides.end(), settings.begin(), settings.end());
   return scene::load_scene(a.scene.file, options);
@@ -81,16 +82,17 @@ int wedge(const WedgeVerb& a) {
   for (const std::string& k : a.keys) keys.push_back(farm::wedge_key(k));
   const farm::Wedge wedge = farm::wedge_of(keys);
   const std::vector<farm::NamedScene> scenes = scenes_of(a, wedge);
-  const fs::path folder =
-      a.out.empty() ? fs::path(a.scene.load().output.folder + "-wedge") : fs::path(a.out);
+  const fs::path folder = a.out.empty() ? fs::path(a.scene.load().output.folder + "-wedge") : fs::path(a.out);
   if (a.farm.options.to.empty()) {
-    farm::make_wedge(wedge, {folder, fs::read_symlink("/proc/self/exe"), words_of(a), a.jobs});
+    farm::WedgeOptions options{folder, fs::read_symlink("/proc/self/exe"), words_of(a), {}, a.jobs};
+    for (const farm::NamedScene& s : scenes) options.frames.push_back(s.scene.time.frames);
+    farm::make_wedge(wedge, options);
     print_files(folder);
     return 0;
   }
   farm::FarmOptions options = a.farm.options;
   options.folder = folder;
-  options.program = own_program();
+  options.program = own_program(), options.source = a.scene.file;
   const farm::WrittenJob job = farm::write_wedge_job(scenes[0].scene.name + "-wedge", scenes, options);
   farm::begin_table(wedge, folder);
   info("{} runs; start them by: {}", scenes.size(), job.start);
@@ -102,8 +104,9 @@ int wedge(const WedgeVerb& a) {
 
 void add_wedge(CLI::App& app, Action& action) {
   auto a = std::make_shared<WedgeVerb>();
-  CLI::App* verb = add_verb(app, "wedge", "Make a scene for every combination of some keys' values, and compare them",
-                            "dreampm wedge scenes/dam-break.yaml space.spacing=0.04,0.03 materials.water.viscosity=0.001,1");
+  CLI::App* verb =
+      add_verb(app, "wedge", "Make a scene for every combination of some keys' values, and compare them",
+               "dreampm wedge scenes/dam-break.yaml space.spacing=0.04,0.03 materials.water.viscosity=0.001,1");
   a->scene.add_to(*verb);
   verb->get_option("SCENE")->description("scene file (YAML); or a wedge's folder, whose table is made anew");
   verb->add_option("KEY", a->keys, "KEY=a,b,c: a key of the scene and its values, as in space.spacing=0.01,0.02")

@@ -15,11 +15,11 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Five small frames of a scene with a mesh in it, which lies in a folder of its own.
+/// Three small frames of a scene with a mesh in it, which lies in a folder of its own.
 const std::string cube_scene = R"(dreampm: 1
 name: cube
 space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}
-time: {fps: 24, frames: 5, cfl: 0.5}
+time: {fps: 24, frames: 3, cfl: 0.5}
 materials: {water: {type: newtonian, max_compression: 0.05}}
 bodies: {drop: {material: water, shape: {mesh: mine/cube.off, scale: 0.2, center: [0.15, 0.15, 0.15]}}}
 output: {folder: out/cube}
@@ -36,7 +36,9 @@ class Farm : public Typing {
   }
   std::string film(const std::string& run) const { return read_file(folder / run / "cube.mp4"); }
   /// `make -j2` in the job's folder; MAKEFLAGS of a make around the tests are no part of it.
-  Typed make_job(const std::string& job) const { return shell("env -u MAKEFLAGS -u MAKELEVEL make -C " + job + " -j2"); }
+  Typed make_job(const std::string& job) const {
+    return shell("env -u MAKEFLAGS -u MAKELEVEL make -C " + job + " -j2");
+  }
 };
 
 TEST_F(Farm, AMakefileGivesTheFilmOfMakeAfterTheFolderMoved) {
@@ -54,7 +56,7 @@ TEST_F(Farm, AMakefileGivesTheFilmOfMakeAfterTheFolderMoved) {
   EXPECT_EQ(read_file(folder / "far/job/contact-sheet.png"), read_file(folder / "whole/contact-sheet.png"));
   const json run = record("far/job"), whole = record("whole");
   for (const char* stage : {"simulate", "surface", "render", "video"}) {
-    EXPECT_EQ(run.at("stages").at(stage).at("frames"), 5) << stage;
+    EXPECT_EQ(run.at("stages").at(stage).at("frames"), 3) << stage;
     EXPECT_EQ(run.at("stages").at(stage).at("status"), "complete") << stage;
   }
   EXPECT_EQ(run.at("stages").at("surface").at("volumes"), whole.at("stages").at("surface").at("volumes"));
@@ -63,7 +65,7 @@ TEST_F(Farm, AMakefileGivesTheFilmOfMakeAfterTheFolderMoved) {
 
   t = make_job("far/job");
   EXPECT_EQ(t.code, 0);
-  EXPECT_THAT(t.err, HasSubstr("nothing to do: frames 3-4 of . is up to date"));
+  EXPECT_THAT(t.err, HasSubstr("nothing to do: frames 1-2 of . is up to date"));
   EXPECT_THAT(t.err, Not(HasSubstr("render: frame")));
 }
 
@@ -73,20 +75,20 @@ TEST_F(Farm, APartIsMadeAloneAndAgainOnlyWhereSomethingIsGone) {
   EXPECT_THAT(t.err, HasSubstr("nothing is simulated there; dreampm make cube.yaml --only simulate"));
   ASSERT_EQ(type("make cube.yaml --only simulate").code, 0);
   EXPECT_FALSE(fs::exists(folder / "out/cube/surface"));
-  ASSERT_EQ(type("make cube.yaml --only frames --frames 4-5").code, 0);
-  EXPECT_TRUE(fs::exists(folder / "out/cube/render/render_000005.png"));
-  EXPECT_FALSE(fs::exists(folder / "out/cube/render/render_000003.png"));
+  ASSERT_EQ(type("make cube.yaml --only frames --frames 3").code, 0);
+  EXPECT_TRUE(fs::exists(folder / "out/cube/render/render_000003.png"));
+  EXPECT_FALSE(fs::exists(folder / "out/cube/render/render_000002.png"));
   t = type("make cube.yaml --only film");
   EXPECT_EQ(t.code, 2);
   EXPECT_THAT(t.err, HasSubstr("the surface of frame 1 is missing"));
   EXPECT_FALSE(fs::exists(folder / "out/cube/cube.mp4"));
 
   // What is gone of a chunk is made again, and no more.
-  ASSERT_EQ(type("make cube.yaml --only frames --frames 1-3").code, 0);
+  ASSERT_EQ(type("make cube.yaml --only frames --frames 1-2").code, 0);
   const auto kept = fs::last_write_time(folder / "out/cube/render/render_000001.png");
   fs::remove(folder / "out/cube/render/render_000002.png");
-  t = type("make cube.yaml --only frames --frames 1-3");
-  EXPECT_THAT(t.err, HasSubstr("render: render_000002.png is not there: 1 of 3 frames again"));
+  t = type("make cube.yaml --only frames --frames 1-2");
+  EXPECT_THAT(t.err, HasSubstr("render: render_000002.png is not there: 1 of 2 frames again"));
   EXPECT_EQ(fs::last_write_time(folder / "out/cube/render/render_000001.png"), kept);
   ASSERT_EQ(type("make cube.yaml --only film").code, 0);
   EXPECT_THAT(type("make cube.yaml").err, HasSubstr("nothing to do"));
@@ -107,7 +109,7 @@ TEST_F(Farm, AFrameThatWasTakenOutIsNotTakenForMade) {
 
 TEST_F(Farm, TasksOfOtherScenesAndFramesAreRefused) {
   ASSERT_EQ(type("make cube.yaml --only simulate").code, 0);
-  expect_refused("make cube.yaml --only frames --frames 5-6", "frame 6 is not simulated; it has 5 frames");
+  expect_refused("make cube.yaml --only frames --frames 3-4", "frame 4 is not simulated; it has 3 frames");
   expect_refused("make cube.yaml --only frames --frames 1-2 --set gravity=[0,-5,0]",
                  "is another scene than the one there (gravity: [0, -9.81, 0] -> [0, -5, 0])");
   expect_refused("make cube.yaml --only frames", "needs --frames A-B");
@@ -136,10 +138,10 @@ TEST_F(Farm, AStoppedChunkGoesOn) {
   // A picture takes more than a tenth of a second at this size.
   const std::string slow = "make cube.yaml --set render.size=[256,144] --set render.samples=16 ";
   ASSERT_EQ(type(slow + "--only simulate").code, 0);
-  Typed t = stop_at("out/cube/render/render_000001.png", slow + "--only frames --frames 1-5");
+  Typed t = stop_at("out/cube/render/render_000001.png", slow + "--only frames --frames 1-3");
   EXPECT_EQ(t.code, 130);
   EXPECT_THAT(t.err, HasSubstr("type the same command again to go on"));
-  t = type(slow + "--only frames --frames 1-5");
+  t = type(slow + "--only frames --frames 1-3");
   EXPECT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(t.err, HasSubstr("going on, "));
   ASSERT_EQ(type(slow + "--only film").code, 0);
@@ -151,12 +153,12 @@ TEST_F(Farm, JobsOfOtherProgramsHaveTheTasksInTheirOrder) {
   const std::string job = read_file(folder / "out/cube/template.yaml");
   for (const char* line :
        {"specificationVersion: jobtemplate-2023-09\n", "extensions: [TASK_CHUNKING]\n", "- dependsOn: Simulate\n",
-        "- dependsOn: Frames\n", "range: \"1-5\"\n", "chunks: {defaultTaskCount: 2, rangeConstraint: CONTIGUOUS}"})
+        "- dependsOn: Frames\n", "range: \"1-3\"\n", "chunks: {defaultTaskCount: 2, rangeConstraint: CONTIGUOUS}"})
     EXPECT_THAT(job, HasSubstr(line));
   ASSERT_EQ(type("farm cube.yaml --to slurm --chunk 2 --isa sse4 --threads 3").code, 0);
   const std::string script = read_file(folder / "out/cube/slurm.sh");
   EXPECT_THAT(script, HasSubstr("--only simulate --out . --isa sse4 --threads 3'"));
-  EXPECT_THAT(script, HasSubstr("--frames $first-$last --out . --threads 3' --array=0-2)\n"));
+  EXPECT_THAT(script, HasSubstr("--frames $first-$last --out . --threads 3' --array=0-1)\n"));
   EXPECT_EQ(shell("bash -n out/cube/slurm.sh").code, 0);
 }
 
@@ -182,7 +184,7 @@ wc -l <sbatch.log
   EXPECT_EQ(t.out, "submitted; the last job is 3\n");
   EXPECT_TRUE(film("out/cube") == film("whole")) << "the films differ";
   const std::string log = read_file(folder / "out/cube/sbatch.log");
-  EXPECT_THAT(log, HasSubstr("--dependency=afterok:1 --partition=film --array=0-2"));
+  EXPECT_THAT(log, HasSubstr("--dependency=afterok:1 --partition=film --array=0-1"));
   EXPECT_THAT(log, HasSubstr("--dependency=afterok:2 --partition=film --wrap"));
 }
 

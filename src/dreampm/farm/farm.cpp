@@ -19,10 +19,10 @@ const Format& format_of(const std::string& name) {
   fail_input("no format '{}'{}", name, scene::suggest(name, names));
 }
 
-void check(const model::Scene& scene) {
+void check(const model::Scene& scene, const std::string& source) {
   std::string refused;
   for (const std::string& e : refused_later(scene))
-    refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", scene.name, e);
+    refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source, e);
   if (!refused.empty()) throw InputError(refused);
   with_kept_models(scene);  // reads every model
 }
@@ -51,7 +51,7 @@ WrittenJob write(const Job& job, const FarmOptions& options) {
 
 WrittenJob write_job(const model::Scene& scene, const FarmOptions& options) {
   format_of(options.to);
-  check(scene);
+  check(scene, options.source);
   Job job = new_job(scene.name, options);
   job.runs.push_back({scene.name, "farm/scene.yaml", ".", scene.time.frames});
   make_folder(options.folder / "farm");
@@ -61,7 +61,7 @@ WrittenJob write_job(const model::Scene& scene, const FarmOptions& options) {
 
 WrittenJob write_wedge_job(const std::string& name, const std::vector<NamedScene>& scenes, const FarmOptions& options) {
   format_of(options.to);
-  for (const NamedScene& s : scenes) check(s.scene);
+  for (const NamedScene& s : scenes) check(s.scene, options.source);
   Job job = new_job(name, options);
   job.is_wedge = true;
   make_folder(options.folder / "farm");

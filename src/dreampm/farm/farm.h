@@ -10,6 +10,7 @@
 namespace dreampm::farm {
 
 struct FarmOptions {
+  std::string source;               ///< of the scene, for messages
   std::filesystem::path folder;     ///< of the job; of a single scene also that of its run
   std::string to;                   ///< a name of formats()
   int chunk = 10;                   ///< frames a task

@@ -25,8 +25,8 @@ std::string goals_of(const Job& job, std::size_t number) {
     text += fmt::format("{}: simulate-{}\n{}", goal, n, recipe(frames_task(job, run, range)));
     frames += " " + goal;
   }
-  return text + fmt::format("film-{}:{}\n{}.PHONY: simulate-{}{} film-{}\n", n, frames, recipe(film_task(run)), n,
-                            frames, n);
+  return text +
+         fmt::format("film-{}:{}\n{}.PHONY: simulate-{}{} film-{}\n", n, frames, recipe(film_task(run)), n, frames, n);
 }
 
 std::string makefile(const Job& job) {

@@ -5,10 +5,13 @@
 
 #include <map>
 
+#include "dreampm/base/error.h"
 #include "dreampm/farm/formats.h"
 
 namespace dreampm::farm {
 namespace {
+
+constexpr std::size_t most_values = 1024;  ///< of a task parameter, by the specification
 
 /// A text in the double quotes of JSON, which YAML reads as the same.
 std::string quoted(const std::string& text) {
@@ -51,6 +54,9 @@ std::vector<Group> groups_of(const Job& job) {
   for (const JobRun& run : job.runs) by_frames[run.frames].runs.push_back(run);
   std::vector<Group> groups;
   for (auto& [frames, group] : by_frames) {
+    if (group.runs.size() > most_values)
+      fail_input("{} runs of {} frames: a template takes at most {}; wedge fewer values at once, or --to make",
+                 group.runs.size(), frames, most_values);
     if (by_frames.size() > 1) group.suffix = fmt::format("Of{}", frames);
     groups.push_back(group);
   }

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
 #include <map>
 #include <thread>
@@ -80,8 +81,10 @@ class Running {
 
 }  // namespace
 
-void run_all(const std::vector<Command>& commands, int jobs, const std::function<void(std::size_t, int)>& ended) {
+void run_all(const std::vector<Command>& commands, int jobs, const std::function<void(std::size_t, int)>& ended,
+             const std::function<void()>& meanwhile) {
   Running running;
+  auto shown = std::chrono::steady_clock::now();
   for (std::size_t next = 0; next < commands.size() || running.count() > 0;) {
     if (interrupted()) {
       running.stop();
@@ -93,6 +96,10 @@ void run_all(const std::vector<Command>& commands, int jobs, const std::function
       continue;
     }
     running.look(ended);
+    if (const auto now = std::chrono::steady_clock::now(); now - shown > std::chrono::seconds(1)) {
+      meanwhile();
+      shown = now;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
 }

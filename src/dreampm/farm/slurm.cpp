@@ -66,7 +66,8 @@ std::string slurm_script(const Job& job) {
                         quoted_task(film_task(run)));
   }
   if (job.is_wedge)
-    text += fmt::format("\nlast=$(submit {} \"$films\" {})\n", shell_word(job.name + "-table"), quoted_task(table_task(".")));
+    text += fmt::format("\nlast=$(submit {} \"$films\" {})\n", shell_word(job.name + "-table"),
+                        quoted_task(table_task(".")));
   return text + fmt::format("echo \"submitted; the last job is {}\"\n", job.is_wedge ? "$last" : "$film");
 }
 
@@ -74,6 +75,8 @@ std::string start_slurm(const Job&, const std::filesystem::path& file) { return 
 
 }  // namespace
 
-Format slurm_format() { return {"slurm", "a script that submits arrays of sbatch", "slurm.sh", slurm_script, start_slurm}; }
+Format slurm_format() {
+  return {"slurm", "a script that submits arrays of sbatch", "slurm.sh", slurm_script, start_slurm};
+}
 
 }  // namespace dreampm::farm

@@ -1,5 +1,6 @@
 #include "dreampm/farm/wedge_runs.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "dreampm/base/error.h"
@@ -36,22 +37,57 @@ std::vector<Command> commands_of(const Wedge& wedge, const WedgeOptions& options
   return commands;
 }
 
+/// Files of frames in a folder of the run.
+std::size_t frames_in(const fs::path& folder, const char* extension, int most) {
+  std::size_t count = 0;
+  std::error_code gone;  // a run that starts again removes files meanwhile
+  for (fs::directory_iterator file(folder, gone), end; !gone && file != end; file.increment(gone))
+    if (file->path().extension() == extension) ++count;
+  return std::min(count, static_cast<std::size_t>(most));
+}
+
+/// How far all runs are: frames that are simulated, and frames that are drawn.
+class WedgeProgress {
+ public:
+  WedgeProgress(const Wedge& wedge, const WedgeOptions& options)
+      : wedge_(wedge), options_(options), progress_("wedge: frame", total()) {}
+
+  void show(std::size_t ended) {
+    std::size_t done = 0;
+    for (std::size_t r = 0; r < wedge_.runs.size(); ++r) {
+      const fs::path run = options_.folder / wedge_.runs[r].name;
+      done += frames_in(run / "particles", ".ply", options_.frames[r]);
+      done += frames_in(run / "render", ".png", options_.frames[r]);
+    }
+    progress_.update(done, fmt::format("{} of {} runs", ended, wedge_.runs.size()));
+  }
+
+ private:
+  std::size_t total() const {
+    std::size_t sum = 0;
+    for (const int frames : options_.frames) sum += 2 * static_cast<std::size_t>(frames);
+    return sum;
+  }
+  const Wedge& wedge_;
+  const WedgeOptions& options_;
+  Progress progress_;
+};
+
 /// Makes the runs; returns what is to be said of those that failed.
 std::vector<std::string> run_wedge(const Wedge& wedge, const WedgeOptions& options) {
   const std::vector<Command> commands = commands_of(wedge, options);
   std::vector<std::string> failed;
-  Progress progress("wedge: run", wedge.runs.size());
+  WedgeProgress progress(wedge, options);
   std::size_t done = 0;
-  progress.update(0);
-  run_all(commands, options.jobs, [&](std::size_t index, int code) {
+  progress.show(0);
+  const auto ended = [&](std::size_t index, int code) {
     ++done;
-    const std::string& name = wedge.runs[index].name;
-    if (code != 0) {
-      failed.push_back(fmt::format("{}: {}", name, last_line(commands[index].said)));
-      warn("{}", failed.back());
-    }
-    progress.update(done, name);
-  });
+    if (code == 0) return;
+    failed.push_back(fmt::format("{}: {}", wedge.runs[index].name, last_line(commands[index].said)));
+    warn("{}", failed.back());
+  };
+  run_all(commands, options.jobs, ended, [&] { progress.show(done); });
+  progress.show(done);
   return failed;
 }
 

@@ -12,6 +12,7 @@ struct WedgeOptions {
   std::filesystem::path folder;    ///< of the wedge
   std::filesystem::path program;   ///< dreampm
   std::vector<std::string> scene;  ///< what `dreampm make` is called with, without the values: the file, ..
+  std::vector<int> frames;         ///< of each run, for the progress
   int jobs = 1;                    ///< runs at once
 };
 

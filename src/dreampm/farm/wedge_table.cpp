@@ -206,7 +206,8 @@ Wedge read_wedge(const fs::path& file) {
   std::string line;
   std::getline(lines, line);
   const auto head = csv_cells(line);
-  const auto status = head ? std::find(head->begin(), head->end(), "status") : std::vector<std::string>::const_iterator();
+  const auto status =
+      head ? std::find(head->begin(), head->end(), "status") : std::vector<std::string>::const_iterator();
   if (!head || head->at(0) != "folder" || status == head->end())
     fail_input("{}:1: is no table of a wedge: 'folder', keys and 'status' come first", file.string());
   Wedge wedge;
