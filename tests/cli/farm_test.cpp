@@ -23,7 +23,7 @@ time: {fps: 24, frames: 3, cfl: 0.5}
 materials: {water: {type: newtonian, max_compression: 0.05}}
 bodies: {drop: {material: water, shape: {mesh: mine/cube.off, scale: 0.2, center: [0.15, 0.15, 0.15]}}}
 output: {folder: out/cube}
-render: {size: [32, 18], samples: 4, noise: 0.2, caustics: false}
+render: {size: [32, 18], samples: 4, noise: 0.2, caustics: false, stage: {floor: none}}
 )";
 
 class Farm : public Typing {
@@ -97,14 +97,15 @@ TEST_F(Farm, APartIsMadeAloneAndAgainOnlyWhereSomethingIsGone) {
 
 TEST_F(Farm, AFrameThatWasTakenOutIsNotTakenForMade) {
   // Killed between taking a frame out and making it: the chunk's own notes say so, not the run's.
-  ASSERT_EQ(type("make cube.yaml --set time.frames=2").code, 0);
-  const std::string table = read_file(folder / "out/cube/render/frames.csv");
+  ASSERT_EQ(type("run cube.yaml").code, 0);
+  ASSERT_EQ(type("surface out/cube").code, 0);
+  const std::string table = read_file(folder / "out/cube/surface/frames.csv");
   const std::size_t head = table.find('\n') + 1;
   fs::create_directories(folder / "out/cube/chunks/000001-000002");
-  write("out/cube/chunks/000001-000002/render.csv", table.substr(0, head) + "2,-,-,-\n");
-  const Typed t = type("render out/cube");
-  EXPECT_THAT(t.err, HasSubstr("render: going on, 1 of 2 frames are there"));
-  EXPECT_EQ(read_file(folder / "out/cube/render/frames.csv"), table);
+  write("out/cube/chunks/000001-000002/surface.csv", table.substr(0, head) + "2,-,-\n");
+  const Typed t = type("surface out/cube");
+  EXPECT_THAT(t.err, HasSubstr("surface: going on, 2 of 3 frames are there"));
+  EXPECT_EQ(read_file(folder / "out/cube/surface/frames.csv"), table);
 }
 
 TEST_F(Farm, TasksOfOtherScenesAndFramesAreRefused) {
@@ -135,8 +136,8 @@ TEST_F(Farm, ChunksWorkBesideEachOtherAndNobodyBesideWhoHoldsTheFolder) {
 }
 
 TEST_F(Farm, AStoppedChunkGoesOn) {
-  // A picture takes more than a tenth of a second at this size.
-  const std::string slow = "make cube.yaml --set render.size=[256,144] --set render.samples=16 ";
+  // The light on the floor takes more than a tenth of a second a picture.
+  const std::string slow = "make cube.yaml --set render.stage.floor=tiles ";
   ASSERT_EQ(type(slow + "--only simulate").code, 0);
   Typed t = stop_at("out/cube/render/render_000001.png", slow + "--only frames --frames 1-3");
   EXPECT_EQ(t.code, 130);
@@ -177,8 +178,8 @@ for task in $(seq ${array%-*} ${array#*-}); do
 done
 wc -l <sbatch.log
 )sh");
-  ASSERT_EQ(type("farm cube.yaml --to slurm --chunk 2").code, 0);
-  ASSERT_EQ(type("make cube.yaml --out whole").code, 0);
+  ASSERT_EQ(type("farm cube.yaml --to slurm --chunk 1 --set time.frames=2").code, 0);
+  ASSERT_EQ(type("make cube.yaml --out whole --set time.frames=2").code, 0);
   const Typed t = shell("chmod +x bin/sbatch && PATH=$PWD/bin:$PATH bash out/cube/slurm.sh --partition=film");
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_EQ(t.out, "submitted; the last job is 3\n");

@@ -28,10 +28,11 @@ class Guide : public Typing, public testing::WithParamInterface<const char*> {
       if (line.starts_with("export PATH")) continue;  // the test has a path of its own
       SCOPED_TRACE(line);
       const bool ours = line.starts_with("dreampm ");
-      const bool computes =
-          ours && std::string("make run farm wedge ").find(line.substr(8, line.find(' ', 8) - 7)) != std::string::npos;
+      const auto is = [&](const char* verb) { return line.starts_with(std::string("dreampm ") + verb + " "); };
+      const bool computes = is("make") || is("run") || is("farm") || is("wedge");
       const std::string coarse =
-          " --set space.spacing=0.04 --set time.seconds=0.09 --set render.size=[32,18] --set render.samples=4";
+          std::string(" --set space.spacing=0.04 --set render.size=[32,18] --set render.samples=4 --set ") +
+          (is("wedge") ? "time.frames=1" : "time.seconds=0.09");
       const Typed t = ours ? type(line.substr(8) + (computes ? coarse : "")) : shell(line);
       EXPECT_EQ(t.code, 0) << t.err;
       ++typed;

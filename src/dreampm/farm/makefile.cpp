@@ -8,11 +8,22 @@
 namespace dreampm::farm {
 namespace {
 
-/// A recipe: make reads $$ as $.
-std::string recipe(const std::vector<std::string>& words) {
+/// Make reads $$ as $.
+std::string escaped(const std::string& text) {
   std::string line;
-  for (const char c : shell_line(words)) line += c == '$' ? std::string("$$") : std::string(1, c);
-  return "\t$(DREAMPM) " + line + "\n";
+  for (const char c : text) line += c == '$' ? std::string("$$") : std::string(1, c);
+  return line;
+}
+
+std::string recipe(const std::vector<std::string>& words) {
+  return "\t$(DREAMPM) " + escaped(shell_line(words)) + "\n";
+}
+
+/// A variable's value, in which # begins a comment.
+std::string value(const std::string& word) {
+  std::string text;
+  for (const char c : escaped(shell_word(word))) text += c == '#' ? std::string("\\#") : std::string(1, c);
+  return text;
 }
 
 std::string goals_of(const Job& job, std::size_t number) {
@@ -38,7 +49,7 @@ std::string makefile(const Job& job) {
   std::string text =
       "# Written by `dreampm farm` or `dreampm wedge`: type `make -j2` in this folder. Each goal goes on where it\n"
       "# stopped and leaves what is up to date. DREAMPM=/path/to/dreampm: another program.\n";
-  text += fmt::format("DREAMPM ?= {}\n.PHONY: all\n", shell_word(job.program));
+  text += fmt::format("DREAMPM ?= {}\n.PHONY: all\n", value(job.program));
   if (!job.is_wedge) return text + "all:" + films + "\n" + goals;
   return text + "all: table\n" + goals + "\n.PHONY: table\ntable:" + films + "\n" + recipe(table_task("."));
 }
