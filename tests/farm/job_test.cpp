@@ -35,7 +35,8 @@ int count(const std::string& text, const std::string& part) {
 
 TEST(Jobs, EveryFrameIsInOneChunk) {
   const std::string text = format("make").text(job_of({{"dam", "farm/scene.yaml", ".", 25}}, 10));
-  for (const char* range : {" --frames 1-10 ", " --frames 11-20 ", " --frames 21-25 "}) EXPECT_THAT(text, HasSubstr(range));
+  for (const char* range : {" --frames 1-10 ", " --frames 11-20 ", " --frames 21-25 "})
+    EXPECT_THAT(text, HasSubstr(range));
   EXPECT_EQ(count(text, "--only frames"), 3);
   EXPECT_THAT(text, HasSubstr("film-1: frames-1-1 frames-1-2 frames-1-3\n"));
 }
@@ -49,8 +50,10 @@ TEST(Jobs, MoreChunksThanAnArrayOfSlurmHoldsAreSeveralArrays) {
 }
 
 TEST(Jobs, RunsOfOneLengthAreOneStepOfATemplate) {
-  const JobRun a{"a=1", "farm/a=1.yaml", "a=1", 8}, b{"a=2", "farm/a=2.yaml", "a=2", 8}, c{"a=3", "farm/a=3.yaml", "a=3", 9};
-  const std::string same = format("openjd").text(job_of({a, b}, 10)), other = format("openjd").text(job_of({a, b, c}, 10));
+  const JobRun a{"a=1", "farm/a=1.yaml", "a=1", 8}, b{"a=2", "farm/a=2.yaml", "a=2", 8},
+      c{"a=3", "farm/a=3.yaml", "a=3", 9};
+  const std::string same = format("openjd").text(job_of({a, b}, 10)),
+                    other = format("openjd").text(job_of({a, b, c}, 10));
   EXPECT_EQ(count(same, "type: CHUNK[INT]"), 1);
   EXPECT_THAT(same, HasSubstr("range: [\"a=1\", \"a=2\"]"));
   EXPECT_EQ(count(other, "type: CHUNK[INT]"), 2);

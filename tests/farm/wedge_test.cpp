@@ -29,9 +29,11 @@ TEST(Wedges, AreEveryCombinationAndTheLastKeyChangesFirst) {
 }
 
 TEST(Wedges, AFolderIsNamedByTheValuesAlone) {
-  const auto name = [](const std::string& values) { return wedge_of({wedge_key("space.spacing=" + values)}).runs[0].name; };
+  const auto name = [](const std::string& values) {
+    return wedge_of({wedge_key("space.spacing=" + values)}).runs[0].name;
+  };
   EXPECT_EQ(name("0.1"), name("0.1,0.2"));
-  // What a file's name may not hold, or a shell would read, is told apart by a hash.
+  // What a file's name may not hold, or a shell would read, is kept apart by a hash.
   std::set<std::string> names;
   for (const char* value : {"a/b", "a b", "a$b", "a_b", "../a", "'a'"}) {
     names.insert(name(value));
