@@ -137,7 +137,9 @@ bool make_simulation(const model::Scene& scene, const SceneSource& source, const
   check_scene(scene, source);
   return interruptible(options, [&] {
     bool any = false;
-    simulated(scene, source, options, any);
+    RunFolder run = simulated(scene, source, options, any);
+    for (const FrameStage& stage : frame_stages())
+      if (stage.in_order) any |= stage.make(run, {}).made > 0;
     return any;
   });
 }
@@ -148,7 +150,8 @@ bool make_frames(const model::Scene& scene, const SceneSource& source, const Mak
   return interruptible(options, [&] {
     RunFolder run = open_chunk(options.folder, frames);
     bool any = false;
-    for (const FrameStage& stage : frame_stages()) any |= stage.make(run, frames).made > 0;
+    for (const FrameStage& stage : frame_stages())
+      if (!stage.in_order) any |= stage.make(run, frames).made > 0;
     return any;
   });
 }

@@ -18,14 +18,14 @@ struct MakeOptions {
 /// as the stages do; after Interrupted the same call goes on.
 bool make(const model::Scene& scene, const SceneSource& source, const MakeOptions& options);
 
-/// The first part of make: particles, ledger, checkpoints. Returns, reports and throws as make
-/// does.
+/// The first part of make: particles, ledger, checkpoints, and stages whose frames follow from each
+/// other. Returns, reports and throws as make does.
 bool make_simulation(const model::Scene& scene, const SceneSource& source, const MakeOptions& options);
 
-/// The second: the stages of frame_stages.h, for some frames of a run that is simulated. Others may
-/// make other frames of it at the same time, also on other machines. Throws InputError where the
-/// folder holds no run of this very scene, for frames that are not simulated, and where somebody
-/// makes these.
+/// The second: the other stages of frame_stages.h, for some frames of a run that is simulated.
+/// Others may make other frames of it at the same time, also on other machines. Throws InputError
+/// where the folder holds no run of this very scene, for frames that are not simulated, and where
+/// somebody makes these.
 bool make_frames(const model::Scene& scene, const SceneSource& source, const MakeOptions& options,
                  const FrameRange& frames);
 
