@@ -117,6 +117,7 @@ void add_wedge(CLI::App& app, Action& action) {
                           ->capture_default_str()
                           ->transform(whole_number(1, 1024)));
   a->farm.add_to(*verb, false);
+  verb->get_option("--to")->excludes(of_scenes.back());  // a farm has its own number
   for (const char* name : {"--to", "--chunk", "--isa", "--threads"}) of_scenes.push_back(verb->get_option(name));
   of_scenes.push_back(
       verb->add_option("--out", a->out, "the wedge's folder (default: the scene's output.folder and -wedge)"));

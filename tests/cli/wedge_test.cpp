@@ -98,6 +98,7 @@ TEST_F(Wedge, AKeyThatIsNoneIsRefusedWithTheNearest) {
   expect_refused("wedge dam.yaml space.spacing=0.03,0.03", "has the value 0.03 twice");
   expect_refused("wedge dam.yaml time.cfl=0.5 time.cfl=0.4", "time.cfl is given twice");
   expect_refused("wedge dam.yaml time.cfl=0.5 --chunk 4", "--chunk requires --to");
+  expect_refused("wedge dam.yaml time.cfl=0.5 --to make --jobs 2", "--jobs excludes --to");
   expect_refused("wedge none.yaml time.cfl=0.5", "none.yaml: no such scene file");
   EXPECT_FALSE(fs::exists(folder / "out"));
   fs::create_directories(folder / "other");
