@@ -20,11 +20,13 @@
 #   make wheel      a wheel of the Python package that brings its libraries along, in build/wheels/
 #   make blender      the extension for Blender 4.2 and newer: build/dreampm-blender-VERSION.zip
 #   make test-blender   the extension within Blender: pip fetches bpy, 0.4 GB, once
+#   make test-farm    jobs of Open Job Description, run by openjd-cli, which pip fetches
+#   make test-slurm   jobs of Slurm on a cluster of one machine: half a minute, as root
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender check format clean
+.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender test-farm test-slurm check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -174,6 +176,18 @@ test-blender: all build/setup-blender.stamp
 	@rm -rf build/blender-user
 	@BLENDER_USER_RESOURCES=$(CURDIR)/build/blender-user DREAMPM_COMMAND=$(CURDIR)/build/dreampm \
 	  build/blender-env/bin/python -m pytest -q -p no:cacheprovider tests/blender/in_blender
+
+# Jobs of a farm by the programs that run farms; what they need serves these tests alone.
+build/setup-farm.stamp: tools/packages-farm.txt tools/python_env tools/setup tests/farm/requirements.txt
+	@tools/setup tools/packages-farm.txt
+	@tools/python_env build/farm-env tests/farm/requirements.txt
+	@touch $@
+
+test-farm: all build/setup-farm.stamp
+	@PATH=$(CURDIR)/build/farm-env/bin:$$PATH tests/farm/openjd.sh build/dreampm docs/guide/farm.md
+
+test-slurm: all build/setup-slurm.stamp
+	@tests/farm/slurm.sh build/dreampm
 
 docs: build/setup-dev.stamp
 	@mkdir -p build/docs

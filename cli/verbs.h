@@ -35,6 +35,8 @@ void add_bench_play(CLI::App& bench, Action& action);
   VERB(render)         \
   VERB(video)          \
   VERB(export)         \
+  VERB(farm)           \
+  VERB(wedge)          \
   VERB(check)          \
   VERB(info)           \
   VERB(materials)      \
@@ -92,6 +94,15 @@ void add_threads(CLI::App& verb, int& threads);
 
 /// --isa, shared by the verbs that simulate.
 void add_isa(CLI::App& verb, std::string& isa);
+
+/// What starts this very program: its name if the PATH leads to it, else where it lies.
+std::string own_program();
+
+/// --to, --chunk and what else jobs for a farm are asked for by; `folder` stays to be set.
+struct FarmArguments {
+  farm::FarmOptions options;
+  void add_to(CLI::App& verb, bool required);
+};
 
 /// "1,234,567", "310 MB".
 std::string grouped(std::uint64_t n);

@@ -28,9 +28,11 @@ class Guide : public Typing, public testing::WithParamInterface<const char*> {
       if (line.starts_with("export PATH")) continue;  // the test has a path of its own
       SCOPED_TRACE(line);
       const bool ours = line.starts_with("dreampm ");
-      const bool computes = line.starts_with("dreampm make") || line.starts_with("dreampm run");
+      const auto is = [&](const char* verb) { return line.starts_with(std::string("dreampm ") + verb + " "); };
+      const bool computes = is("make") || is("run") || is("farm") || is("wedge");
       const std::string coarse =
-          " --set space.spacing=0.04 --set time.seconds=0.09 --set render.size=[32,18] --set render.samples=4";
+          std::string(" --set space.spacing=0.04 --set render.size=[32,18] --set render.samples=4 --set ") +
+          (is("wedge") ? "time.frames=1" : "time.seconds=0.09");
       const Typed t = ours ? type(line.substr(8) + (computes ? coarse : "")) : shell(line);
       EXPECT_EQ(t.code, 0) << t.err;
       ++typed;
@@ -57,7 +59,8 @@ std::string name_of_page(const testing::TestParamInfo<const char*>& page) {
 
 INSTANTIATE_TEST_SUITE_P(Pages, Guide,
                          testing::Values("guide/first-film.md", "guide/first-material.md", "guide/first-probe.md",
-                                         "howto/open-in-houdini.md", "howto/open-in-paraview.md", "howto/editor.md"),
+                                         "guide/farm.md", "howto/open-in-houdini.md", "howto/open-in-paraview.md",
+                                         "howto/editor.md"),
                          name_of_page);
 
 class GuideError : public Typing {};

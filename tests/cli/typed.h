@@ -33,6 +33,11 @@ class Typing : public testing::Test {
   Typed type(const std::string& line, const std::string& before = ":") const {
     return shell(before + " && '" + DM_COMMAND + "' " + line);
   }
+  /// The same, stopped by SIGTERM once `file` is there.
+  Typed stop_at(const std::string& file, const std::string& line) const {
+    return shell(std::string("'") + DM_COMMAND + "' " + line + " & until [ -e " + file +
+                 " ]; do sleep 0.01; done; kill $!; wait $!");
+  }
   /// A shell's script in the folder; it holds no quotes but those of DM_COMMAND.
   Typed shell(const std::string& script) const {
     const std::string command = "cd '" + folder.string() + "' && { " + script + "; } >.out 2>.err";

@@ -1,5 +1,6 @@
 #include "dreampm/pipeline/make.h"
 
+#include <functional>
 #include <optional>
 
 #include "dreampm/base/error.h"
@@ -8,11 +9,10 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/pipeline/changes.h"
+#include "dreampm/pipeline/chunk.h"
 #include "dreampm/pipeline/estimate.h"
+#include "dreampm/pipeline/frame_stages.h"
 #include "dreampm/pipeline/models.h"
-#include "dreampm/pipeline/render_stage.h"
-#include "dreampm/pipeline/run_folder.h"
-#include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/pipeline/video_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/video/encode.h"
@@ -71,37 +71,103 @@ bool simulate_rest(const model::Scene& scene, const SceneSource& source, const M
   return true;
 }
 
-bool make_stages(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
+void check_scene(const model::Scene& scene, const SceneSource& source) {
   std::string refused;
   for (const std::string& e : refused_later(scene))
     refused += fmt::format("{}{}: error: {}", refused.empty() ? "" : "\n", source.path, e);
   if (!refused.empty()) throw InputError(refused);
-  check_encoder();
+}
+
+/// What is simulated, or was before. `any`: whether there was something to do.
+RunFolder simulated(const model::Scene& scene, const SceneSource& source, const MakeOptions& options, bool& any) {
   const auto lock = std::make_shared<RunLock>(options.folder);
+  if (std::optional<RunRecord> earlier = earlier_record(options.folder)) fold_chunks(options.folder, *earlier);
   const model::Scene kept = with_kept_models(scene);
   const std::string resolved = scene::emit_scene(kept);
   const fs::path scene_file = options.folder / "scene.yaml";
   if (fs::exists(scene_file))
     for (const std::string& change : changed_keys(read_file(scene_file), resolved)) info("changed: {}", change);
-  bool any = simulate_rest(scene, source, options, lock);
+  any = simulate_rest(scene, source, options, lock);
   write_run_scene(scene, options.folder);
-
   RunFolder run{options.folder, located_in(kept, options.folder), RunRecord::load(options.folder / "run.json"), lock};
-  any |= surface_stage(run).made > 0;
-  any |= render_stage(run).made > 0;
+  fold_chunks(options.folder, run.record);
+  return run;
+}
+
+bool make_stages(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
+  check_scene(scene, source);
+  check_encoder();
+  bool any = false;
+  RunFolder run = simulated(scene, source, options, any);
+  for (const FrameStage& stage : frame_stages()) any |= stage.make(run, {}).made > 0;
   any |= video_stage(run).made > 0;
   return any;
+}
+
+/// What was simulated must be this scene, or frames of two would mix.
+void check_same_scene(const model::Scene& scene, const SceneSource& source, const fs::path& folder) {
+  const fs::path file = folder / "scene.yaml";
+  if (!fs::exists(file) || !fs::exists(folder / "run.json"))
+    fail_input("{}: nothing is simulated there; dreampm make {} --only simulate --out {} does it", folder.string(),
+               source.path, folder.string());
+  std::vector<std::string> changes = changed_keys(read_file(file), scene::emit_scene(with_kept_models(scene)));
+  std::erase_if(changes, [](const std::string& c) { return c.starts_with("output.folder:"); });
+  if (!changes.empty())
+    fail_input("{}: {} is another scene than the one there ({}); dreampm make --only simulate comes first",
+               folder.string(), source.path, changes[0]);
+}
+
+/// Calls `work`, with threads, and an end that says how to go on.
+bool interruptible(const MakeOptions& options, const std::function<bool()>& work) {
+  const ThreadLimit threads(options.threads);
+  try {
+    return work();
+  } catch (const Interrupted&) {
+    throw Interrupted("interrupted; what is done is kept: type the same command again to go on");
+  }
 }
 
 }  // namespace
 
 bool make(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
-  const ThreadLimit threads(options.threads);
-  try {
-    return make_stages(scene, source, options);
-  } catch (const Interrupted&) {
-    throw Interrupted("interrupted; what is done is kept: type the same command again to go on");
-  }
+  return interruptible(options, [&] { return make_stages(scene, source, options); });
+}
+
+bool make_simulation(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
+  check_scene(scene, source);
+  return interruptible(options, [&] {
+    bool any = false;
+    RunFolder run = simulated(scene, source, options, any);
+    for (const FrameStage& stage : frame_stages())
+      if (stage.in_order) any |= stage.make(run, {}).made > 0;
+    return any;
+  });
+}
+
+bool make_frames(const model::Scene& scene, const SceneSource& source, const MakeOptions& options,
+                 const FrameRange& frames) {
+  check_same_scene(scene, source, options.folder);
+  return interruptible(options, [&] {
+    RunFolder run = open_chunk(options.folder, frames);
+    bool any = false;
+    for (const FrameStage& stage : frame_stages())
+      if (!stage.in_order) any |= stage.make(run, frames).made > 0;
+    return any;
+  });
+}
+
+bool make_film(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
+  check_encoder();
+  check_same_scene(scene, source, options.folder);
+  return interruptible(options, [&] {
+    RunFolder run = open_run(options.folder, Access::write);
+    run.frame_record(scene.time.frames);  // throws where the simulation has not come so far
+    for (const FrameStage& stage : frame_stages())
+      if (const std::string why = stage.missing(run, run.frames()); !why.empty()) fail_input("{}", why);
+    bool any = false;
+    for (const FrameStage& stage : frame_stages()) any |= stage.make(run, {}).made > 0;  // what else is there goes
+    return video_stage(run).made > 0 || any;
+  });
 }
 
 }  // namespace dreampm

@@ -80,14 +80,16 @@ model::Scene located_in(model::Scene kept, const fs::path& folder) {
   return kept;
 }
 
-void write_run_scene(const model::Scene& scene, const fs::path& folder) {
-  std::set<std::string> hashes;
-  for (const auto& [path, name] : kept_names(scene)) {
-    copy_model(path, folder / name);
-    hashes.insert(name.parent_path().filename().string());
-  }
+void write_portable_scene(const model::Scene& scene, const fs::path& file) {
+  for (const auto& [path, name] : kept_names(scene)) copy_model(path, file.parent_path() / name);
   const std::string text = scene::emit_scene(with_kept_models(scene));
-  if (!holds(folder / "scene.yaml", text)) replace_file_text(folder / "scene.yaml", text);
+  if (!holds(file, text)) replace_file_text(file, text);
+}
+
+void write_run_scene(const model::Scene& scene, const fs::path& folder) {
+  write_portable_scene(scene, folder / "scene.yaml");
+  std::set<std::string> hashes;
+  for (const auto& [path, name] : kept_names(scene)) hashes.insert(name.parent_path().filename().string());
   remove_others(folder / models, hashes);
 }
 

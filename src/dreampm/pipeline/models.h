@@ -18,4 +18,8 @@ model::Scene located_in(model::Scene kept, const std::filesystem::path& folder);
 /// not name. Throws RunError if they cannot be written.
 void write_run_scene(const model::Scene& scene, const std::filesystem::path& folder);
 
+/// Writes the scene as `file`, and copies of its models beside it, as models/HASH/NAME: the folder
+/// may move to another machine. Copies of other scenes there stay.
+void write_portable_scene(const model::Scene& scene, const std::filesystem::path& file);
+
 }  // namespace dreampm

@@ -61,6 +61,10 @@ std::function<Identity(int frame)> render_identity(const RunFolder& run, const R
   };
 }
 
+std::string no_picture(const RunFolder& run, const std::vector<int>& frames) {
+  return not_up_to_date(run, "render", frames, render_identity(run));
+}
+
 StageResult render_stage(RunFolder& run, const RenderOptions& options) {
   const RenderSettings settings = scaled(render_settings(run.scene), options.scale, options.samples);
   StageWork work;

@@ -22,6 +22,9 @@ std::filesystem::path picture_file(const RunFolder& run, int frame);
 /// What a picture depends on; `run` must outlive it.
 std::function<Identity(int frame)> render_identity(const RunFolder& run, const RenderOptions& options = {});
 
+/// Why one of the frames has no picture that is up to date, and what makes it; empty if all have.
+std::string no_picture(const RunFolder& run, const std::vector<int>& frames);
+
 /// Draws the pictures that are not up to date; one of another scale or number of samples is not.
 /// Throws InputError for a frame that is not simulated and one whose surface is missing or not up
 /// to date.

@@ -1,29 +1,17 @@
 #include "dreampm/pipeline/run_folder.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
-#include <sstream>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/io/numbered.h"
+#include "dreampm/pipeline/chunk.h"
 #include "dreampm/scene/parse.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
-namespace {
-
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> cells;
-  std::istringstream in(line);
-  for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
-  return cells;
-}
-
-}  // namespace
 
 std::vector<int> RunFolder::frames() const {
   std::vector<int> list;
@@ -87,61 +75,20 @@ RunFolder open_run(const fs::path& folder, Access access) {
   options.of_run = true;
   run.scene = scene::load_scene(folder / "scene.yaml", options);
   run.record = RunRecord::load(folder / "run.json");
+  if (run.lock) fold_chunks(folder, run.record);
   return run;
 }
 
-FrameTable::FrameTable(fs::path file) : file_(std::move(file)) {
-  if (!fs::exists(file_)) return;
-  std::istringstream in(read_file(file_));
-  std::string line;
-  if (!std::getline(in, line)) return;
-  names_ = split(line);
-  if (names_.empty() || names_[0] != "frame") return;
-  names_.erase(names_.begin());
-  while (std::getline(in, line)) {
-    std::vector<std::string> cells = split(line);
-    int frame = 0;
-    // What cannot be read is made again.
-    if (cells.size() != names_.size() + 1 ||
-        std::from_chars(cells[0].data(), cells[0].data() + cells[0].size(), frame).ec != std::errc{})
-      continue;
-    cells.erase(cells.begin());
-    rows_[frame] = std::move(cells);
-  }
+FrameTable RunFolder::table(const std::string& stage) const {
+  return {folder / stage / "frames.csv", chunk_tables(folder, stage),
+          chunk.empty() ? fs::path() : chunk / (stage + ".csv")};
 }
 
-std::string FrameTable::why_redo(int frame, const Identity& identity) const {
-  const auto row = rows_.find(frame);
-  if (row == rows_.end()) return "new";
-  for (std::size_t i = 0; i < identity.size(); ++i)
-    if (i >= names_.size() || names_[i] != identity[i].first || row->second[i] != identity[i].second)
-      return fmt::format("the {} changed", identity[i].first);
-  return {};
-}
-
-void FrameTable::enter(int frame, const Identity& identity) {
-  std::vector<std::string> names, row;
-  for (const auto& [name, hash] : identity) names.push_back(name), row.push_back(hash);
-  if (names != names_) rows_.clear();
-  names_ = std::move(names);
-  rows_[frame] = std::move(row);
-  save();
-}
-
-void FrameTable::remove(int frame) {
-  if (rows_.erase(frame) > 0) save();
-}
-
-std::vector<int> FrameTable::frames() const {
-  std::vector<int> list;
-  for (const auto& [frame, row] : rows_) list.push_back(frame);
-  return list;
-}
-
-void FrameTable::save() const {
-  std::string text = fmt::format("frame,{}\n", fmt::join(names_, ","));
-  for (const auto& [frame, row] : rows_) text += fmt::format("{},{}\n", frame, fmt::join(row, ","));
-  replace_file_text(file_, text);
+void RunFolder::save_record() const {
+  if (chunk.empty()) return record.save(folder / "run.json");
+  RunRecord part = record;
+  part.frames.clear();  // the run has them
+  part.save(chunk / "run.json");
 }
 
 }  // namespace dreampm

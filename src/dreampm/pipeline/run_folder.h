@@ -1,17 +1,22 @@
 // What lies in a run's folder, and which of its frames are up to date.
 #pragma once
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "dreampm/io/run_record.h"
 #include "dreampm/model/scene.h"
+#include "dreampm/pipeline/frame_table.h"
 #include "dreampm/pipeline/run_lock.h"
 
 namespace dreampm {
+
+/// Frames `first` to `last`, both included; 0, 0: all.
+struct FrameRange {
+  int first = 0, last = 0;
+  bool all() const { return first == 0 && last == 0; }
+};
 
 /// A run's folder, opened: stages read the resolved scene and run.json from it.
 struct RunFolder {
@@ -19,6 +24,7 @@ struct RunFolder {
   model::Scene scene;
   RunRecord record;
   std::shared_ptr<RunLock> lock{};  ///< while a stage works; null for a folder that is only read
+  std::filesystem::path chunk{};    ///< where tables, costs and log go; empty: where those of the run lie (chunk.h)
 
   /// The frames that are simulated and that the scene asks for, from 1.
   std::vector<int> frames() const;
@@ -28,7 +34,10 @@ struct RunFolder {
   const FrameRecord& frame_record(int frame) const;
   std::string state_hash(int frame) const;
   std::filesystem::path particles(int frame) const;
-  void save_record() const { record.save(folder / "run.json"); }
+  /// Which frames of the stage are made, chunks included.
+  FrameTable table(const std::string& stage) const;
+  std::filesystem::path log_file() const { return (chunk.empty() ? folder : chunk) / "log.txt"; }
+  void save_record() const;
 };
 
 enum class Access { read, write };
@@ -40,28 +49,5 @@ RunFolder open_run(const std::filesystem::path& folder, Access access = Access::
 /// Throws InputError where the folder has a run that is whole, or that can go on from a checkpoint:
 /// hours may be in it.
 void refuse_to_replace(const std::filesystem::path& folder);
-
-/// What a product depends on, as named hashes: {"simulation", ".."}, {"surface settings", ".."}.
-using Identity = std::vector<std::pair<std::string, std::string>>;
-
-/// Which frames of a stage exist, and what they were made from: STAGE/frames.csv. A frame is
-/// entered after its files are whole and taken out before they are touched, so that a killed run
-/// never leaves a wrong entry.
-class FrameTable {
- public:
-  /// Reads the file; one that is missing or damaged is an empty table.
-  explicit FrameTable(std::filesystem::path file);
-  /// Empty if the frame was made from the same; else what changed since, or "new".
-  std::string why_redo(int frame, const Identity& identity) const;
-  void enter(int frame, const Identity& identity);
-  void remove(int frame);
-  std::vector<int> frames() const;
-
- private:
-  void save() const;
-  std::filesystem::path file_;
-  std::vector<std::string> names_;
-  std::map<int, std::vector<std::string>> rows_;
-};
 
 }  // namespace dreampm

@@ -37,7 +37,7 @@ bool is_there(int descriptor, const fs::path& file) {
 
 }  // namespace
 
-RunLock::RunLock(const fs::path& folder) : file_(folder / "lock") {
+RunLock::RunLock(const fs::path& folder, LockKind kind) : kind_(kind), file_(folder / "lock") {
   if (!fs::exists(folder)) {
     made_ = fs::absolute(folder).lexically_normal();
     if (!made_.has_filename()) made_ = made_.parent_path();
@@ -57,7 +57,7 @@ void RunLock::lock(const fs::path& folder) {
     make_folder(folder);
     descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
     if (descriptor_ < 0) fail_input("{}: nothing may be written there: {}", folder.string(), system_reason());
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (::flock(descriptor_, (kind_ == LockKind::alone ? LOCK_EX : LOCK_SH) | LOCK_NB) != 0) {
       if (errno != EWOULDBLOCK) {
         warn("{}: cannot be locked ({}): make sure that no other process works in this folder", file_.string(),
              system_reason());
@@ -74,6 +74,7 @@ void RunLock::lock(const fs::path& folder) {
   // Another process may have made the folder meanwhile, and filled it.
   for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().filename() != file_.filename()) keep();
+  if (kind_ == LockKind::shared) return;  // no one process holds it
   const std::string process = fmt::format("{}\n", ::getpid());
   // For people only: on a full disk the lock holds all the same.
   if (::ftruncate(descriptor_, 0) != 0 || ::pwrite(descriptor_, process.data(), process.size(), 0) < 0)
@@ -87,7 +88,7 @@ RunLock::~RunLock() {
     // Parents that another run uses by now are not empty, and stay.
     for (fs::path parent = made_.parent_path(); parent != existing_ && fs::remove(parent, ignored);)
       parent = parent.parent_path();
-  } else if (::ftruncate(descriptor_, 0) != 0) {
+  } else if (kind_ == LockKind::alone && ::ftruncate(descriptor_, 0) != 0) {
     warn("{}: cannot be written: {}", file_.string(), system_reason());
   }
   ::close(descriptor_);

@@ -9,6 +9,7 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
+#include "dreampm/pipeline/chunk.h"
 #include "dreampm/pipeline/simulate.h"
 
 namespace dreampm {
@@ -33,15 +34,16 @@ void remove_leftovers(const StageWork& work, int frame) {
 
 /// Where the last call was cut off after its last frame, or another one made the rest.
 void record_complete(RunFolder& run, const std::string& stage) {
-  const std::optional<std::string>& status = run.record.stages[stage].status;
-  if (!status || *status == "complete") return;
+  if (run.record.stages[stage].status == "complete") return;
   run.record.end_stage(stage, "complete");
   run.save_record();
 }
 
 /// A run that was opened to be read, and is worked on.
 void hold(RunFolder& run) {
-  if (!run.lock) run.lock = std::make_shared<RunLock>(run.folder);
+  if (run.lock) return;
+  run.lock = std::make_shared<RunLock>(run.folder);
+  fold_chunks(run.folder, run.record);
 }
 
 }  // namespace
@@ -86,11 +88,24 @@ void record_end(RunFolder& run, const std::string& stage, bool all_frames, const
   }
 }
 
+std::string not_up_to_date(const RunFolder& run, const std::string& stage, const std::vector<int>& frames,
+                           const std::function<Identity(int frame)>& identity) {
+  const FrameTable table = run.table(stage);
+  for (const int f : frames) {
+    const std::string why = table.why_redo(f, identity(f));
+    if (!why.empty())
+      return fmt::format("{}: the {} of frame {} is {}; dreampm {} {} makes it", run.folder.string(),
+                         stage == "render" ? "picture" : stage, f, why == "new" ? "missing" : "not up to date: " + why,
+                         stage, run.folder.string());
+  }
+  return {};
+}
+
 StageResult run_stage(RunFolder& run, const StageWork& work) {
   hold(run);
   const fs::path folder = run.folder / work.name;
   make_folder(folder);
-  FrameTable table(folder / "frames.csv");
+  FrameTable table = run.table(work.name);
   if (work.all_frames)
     for (const int f : table.frames())
       if (std::find(work.frames.begin(), work.frames.end(), f) == work.frames.end()) {
@@ -115,7 +130,7 @@ StageResult run_stage(RunFolder& run, const StageWork& work) {
     return result;
   }
 
-  const LogFile log(run.folder / "log.txt");
+  const LogFile log(run.log_file());
   const std::size_t total = work.frames.size(), kept = total - todo.size();
   if (again)
     info("{}: {}: {} of {} frames again", work.name, result.why, todo.size(), total);

@@ -31,6 +31,11 @@ struct StageResult {
 /// to stop. How it ended is in run.json.
 StageResult run_stage(RunFolder& run, const StageWork& work);
 
+/// Why a frame's product of this stage is missing or not up to date, and what makes it; empty if
+/// all are.
+std::string not_up_to_date(const RunFolder& run, const std::string& stage, const std::vector<int>& frames,
+                           const std::function<Identity(int frame)>& identity);
+
 /// Adds a stage's cost to run.json when it goes out of scope, also on the way of an error.
 class StageCost {
  public:

@@ -85,15 +85,7 @@ std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
 }
 
 std::string no_surface(const RunFolder& run, const std::vector<int>& frames) {
-  const FrameTable table(run.folder / "surface" / "frames.csv");
-  const auto identity = surface_identity(run);
-  for (const int f : frames) {
-    const std::string why = table.why_redo(f, identity(f));
-    if (!why.empty())
-      return fmt::format("{}: the surface of frame {} is {}; dreampm surface {} makes it", run.folder.string(), f,
-                         why == "new" ? "missing" : "not up to date: " + why, run.folder.string());
-  }
-  return {};
+  return not_up_to_date(run, "surface", frames, surface_identity(run));
 }
 
 std::vector<std::string> volume_lines(const RunRecord& record) {
@@ -136,13 +128,14 @@ std::vector<std::string> volume_lines(const RunRecord& record) {
   return lines;
 }
 
-StageResult surface_stage(RunFolder& run) {
+StageResult surface_stage(RunFolder& run, const FrameRange& frames) {
   const std::vector<int> materials = meshed_materials(run.scene);
   if (materials.empty()) return {};
   StageWork work;
   work.name = "surface";
   work.settings_hash = scene::scene_hash(run.scene, scene::Part::surface, run.record.scene_hash);
-  work.frames = run.frames();
+  work.frames = run.chosen(frames.first, frames.last);
+  work.all_frames = frames.all();
   work.identity = surface_identity(run);
   work.products = [&](int f) {
     std::vector<fs::path> files;
@@ -158,10 +151,10 @@ StageResult surface_stage(RunFolder& run) {
     for (const int m : materials) make_surface(run, frame, m, f);
   };
   work.leftovers = [&](int f) { return possible_files(run, f); };
-  keep_volumes(run, work.frames, materials);
+  if (work.all_frames) keep_volumes(run, work.frames, materials);
   const StageResult result = run_stage(run, work);
   if (result.made == 0) return result;
-  const LogFile log(run.folder / "log.txt");
+  const LogFile log(run.log_file());
   for (const std::string& line : volume_lines(run.record)) info("surface: {}", line);
   return result;
 }

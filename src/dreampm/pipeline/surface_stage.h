@@ -21,8 +21,8 @@ std::string no_surface(const RunFolder& run, const std::vector<int>& frames);
 /// a mesh.
 std::vector<std::string> volume_lines(const RunRecord& record);
 
-/// Makes the meshes that are not up to date: PLY, and OBJ or VDB beside it if surface.format says
-/// so. Volumes of meshes and particles go into run.json.
-StageResult surface_stage(RunFolder& run);
+/// Makes the meshes of these frames that are not up to date: PLY, and OBJ or VDB beside it if
+/// surface.format says so. Volumes of meshes and particles go into run.json.
+StageResult surface_stage(RunFolder& run, const FrameRange& frames = {});
 
 }  // namespace dreampm

@@ -46,7 +46,7 @@ StageResult video_stage(RunFolder& run) {
   if (result.why.empty() && (!fs::exists(film) || !fs::exists(sheet))) result.why = "a file is not there";
   if (result.why.empty()) return result;
 
-  const LogFile log(run.folder / "log.txt");
+  const LogFile log(run.log_file());
   if (result.why != "new") info("video: {}: made again", result.why);
   StageCost cost(run, "video");
   table.remove(1);
