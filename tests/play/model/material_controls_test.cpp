@@ -54,14 +54,16 @@ TEST_F(MaterialControls, OfColorsSetTheLookAndNothingElse) {
 }
 
 TEST_F(MaterialControls, GoToTheirTargetsByFactorsOrPartsOfTheSlider) {
-  Targets targets{{"material.water.viscosity", 1}, {"material.jelly.poissons_ratio", 0.2}, {"material.gone.density", 1}};
+  Targets targets{
+      {"material.water.viscosity", 1}, {"material.jelly.poissons_ratio", 0.2}, {"material.gone.density", 1}};
   std::vector<std::string> reached;
   double before = simulation.parameter("water", "viscosity");
   const ControlInfo& ratio = control("material.jelly.poissons_ratio");
   double nu = simulation.parameter("jelly", "poissons_ratio");
   for (int n = 0; n < 100 && !targets.empty(); ++n) {
     for (std::string& name : approach_targets(simulation, controls, looks, targets)) reached.push_back(std::move(name));
-    const double now = simulation.parameter("water", "viscosity"), new_nu = simulation.parameter("jelly", "poissons_ratio");
+    const double now = simulation.parameter("water", "viscosity"),
+                 new_nu = simulation.parameter("jelly", "poissons_ratio");
     EXPECT_LE(now, 1.6 * before * (1 + 1e-12));
     EXPECT_LE(std::abs(new_nu - nu), 0.06 * (ratio.max - ratio.min) * (1 + 1e-9));
     before = now, nu = new_nu;

@@ -42,7 +42,7 @@ std::string remedy(const Simulation& simulation, std::string_view limiter) {
   if (is_projection(simulation.scene().model()))
     return limiter == "speed"  ? "more cells in a step, slower matter, or a larger spacing"
            : limiter == "wave" ? "a larger spacing, or less gravity"
-                                      : "";
+                               : "";
   static const std::map<std::string, std::string, std::less<>> remedies{
       {"wave", "softer matter, more max compression of a liquid, or a larger spacing"},
       {"speed", "slower matter, or a larger spacing"},

@@ -12,7 +12,6 @@
 #include "dreampm/play/model/play_scene.h"
 #include "dreampm/simulation.h"
 
-
 namespace dreampm::play {
 
 /// How matter looks, by the name of its material.

@@ -19,15 +19,9 @@ constexpr const char* explicit_variant = "explicit";
 constexpr std::string_view report_name = "report";
 
 PlayScene play_scene_of(const ReportConfig& config, std::size_t preset, const std::string& file) {
+  Scene own = parse_scene(report_scene(config, preset), file);  // refuses a preset that there is not
   std::string name = fmt::format("{} {}", report_name, config.presets.at(preset).name);
-  PlayScene scene{std::move(name),
-                  parse_scene(report_scene(config, preset), file),
-                  true,
-                  config.max_time_step,
-                  config.max_hard,
-                  file,
-                  {},
-                  preset};
+  PlayScene scene{std::move(name), std::move(own), true, config.max_time_step, config.max_hard, file, {}, preset};
   for (const ReportPreset& p : config.presets) scene.presets.push_back(p.name);
   for (const ReportMaterial& m : config.materials) scene.opacity[report_material_name(m.id)] = m.color[3];
   scene.window = PlayScene::Window{config.width, config.height};
