@@ -103,6 +103,15 @@ Json json_of(const Kind& k) {
           {"dt_for", {{"dx", typical_dx}, {"cfl", typical_cfl}, {"speed", typical_speed}}}};
 }
 
+/// How a slider shows a parameter; null: by its key and its range.
+Json slider_of(const Param& p) {
+  Json slider;
+  if (!p.slider.label.empty()) slider["label"] = std::string(p.slider.label);
+  if (!std::isnan(p.slider.min)) slider["min"] = p.slider.min;
+  if (!std::isnan(p.slider.max)) slider["max"] = p.slider.max;
+  return slider;
+}
+
 void print_json() {
   Json list = Json::array();
   for (const MaterialInfo& m : material_infos()) {
@@ -117,6 +126,7 @@ void print_json() {
                {"max", p.max},
                {"help", std::string(p.help)}};
       if (!words.empty()) one["words"] = words;
+      if (const Json slider = slider_of(p); !slider.is_null()) one["slider"] = slider;
       parameters.push_back(one);
     }
     for (const Preset& p : m.presets) presets.push_back(json_of(kind_of(m, &p)));

@@ -55,21 +55,21 @@ int play(const PlayArguments& args) {
   options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 1280, height = 720;
   if (!args.size.empty()) read_size(args.size, width, height);
-  dreampm::play::PlayScene stage = dreampm::play::load_play_scene(args.what, static_cast<std::size_t>(args.preset - 1));
-  if (args.size.empty() && stage.window) width = stage.window->width, height = stage.window->height;
+  dreampm::play::PlayScene scene = dreampm::play::load_play_scene(args.what, static_cast<std::size_t>(args.preset - 1));
+  if (args.size.empty() && scene.window) width = scene.window->width, height = scene.window->height;
   if (!args.headless) {
     // What would fail at the end fails before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
     dreampm::play::play_in_window(
-        std::move(stage), {options, width, height, args.ui_scale, args.particles, args.record, args.size.empty()});
+        std::move(scene), {options, width, height, args.ui_scale, args.particles, args.record, args.size.empty()});
     return 0;
   }
   if (!args.particles.empty())
-    stage = dreampm::play::resized(
-        std::move(stage), static_cast<std::size_t>(std::ranges::find(dreampm::play::size_names(), args.particles) -
+    scene = dreampm::play::resized(
+        std::move(scene), static_cast<std::size_t>(std::ranges::find(dreampm::play::size_names(), args.particles) -
                                                    dreampm::play::size_names().begin()));
   const std::uint64_t hash = dreampm::play::play_headless(
-      std::move(stage), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
+      std::move(scene), {options, args.frames, args.script, args.screenshots, args.every, width, height, args.ui_scale,
                          !args.no_panels, args.random_actions});
   fmt::print("hash {:016x}\n", hash);
   return 0;
@@ -104,15 +104,17 @@ void add_play(CLI::App& app, Action& action) {
       ->needs(headless)
       ->transform(whole_number(0, 1000000));
   auto* screenshot =
-      verb->add_option("--screenshot", args->screenshots, "folder for a picture of each drawn frame; with --headless")
+      verb->add_option(
+              "--screenshot", args->screenshots,
+              "a file .png for a picture of the last drawn frame, or a folder for one of each; with --headless")
           ->needs(headless);
-  verb->add_option("--every", args->every, "drawn frames from picture to picture")
+  verb->add_option("--every", args->every, "drawn frames from picture to picture, of a folder")
       ->needs(screenshot)
       ->transform(whole_number(1, 1000000));
   verb->add_flag("--no-panels", args->no_panels, "pictures and films of the whole window, without panels")
       ->needs(headless);
   verb->add_option("--random", args->random_actions,
-                   "seed of hands that do anything after the script, to look for what breaks; with --headless")
+                   "seed of random actions after the script, to look for what breaks; with --headless")
       ->needs(headless)
       ->transform(whole_number(0));
   add_threads(*verb, args->threads);

@@ -66,6 +66,20 @@ TEST_F(Play, NamesTheBadLineOfAScript) {
   EXPECT_THAT(error_of("open report 3\n"), HasSubstr("s.txt:1:1: error: there is no preset 3"));
 }
 
+TEST_F(Play, MakesOnePictureOfTheLastFrameOrAFolderOfMany) {
+  write("tank.yaml", tiny_dam);
+  const std::string line = "play tank.yaml --headless --size 160x90 --frames 3 --screenshot ";
+  ASSERT_EQ(type(line + "one.png").code, 0);
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder / "one.png"));
+  ASSERT_EQ(type(line + "many").code, 0);
+  for (const char* name : {"many/frame-0001.png", "many/frame-0002.png", "many/frame-0003.png"})
+    EXPECT_TRUE(std::filesystem::is_regular_file(folder / name)) << name;
+  EXPECT_THAT(refusal("tank.yaml --headless --frames 3 --screenshot x.jpg"),
+              HasSubstr("must be a file that ends in .png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.jpg"));
+  EXPECT_THAT(refusal("tank.yaml --headless --frames 3 --screenshot x.png --every 2"), HasSubstr("needs a folder"));
+}
+
 TEST_F(Play, NamesTheFolderThatCannotBeMade) {
   write("tank.yaml", tiny_dam);
   write("file", "");

@@ -14,6 +14,8 @@ namespace dreampm {
 
 template <class... M>
 struct MaterialList {
+  static_assert((has_right_sliders(M::info.params) && ...),
+                "a slider of a material's table beyond its range, or one that needs what is no switch");
   static constexpr int size = sizeof...(M);
   /// Calls f.template operator()<M>() for each material in order.
   template <class F>

@@ -18,6 +18,17 @@ struct Word {
 
 inline constexpr double derived = std::numeric_limits<double>::quiet_NaN();  ///< a default that the solver works out
 
+/// How a parameter is shown where it is set by hand, as by a slider of the playground.
+struct Slider {
+  /// What it covers; `derived`: the range of the parameter, of a slider in decades some of them.
+  double min = derived, max = derived;
+  std::string_view label = {};  ///< empty: the key, with blanks
+  bool basic = false;           ///< whether beginners see it; in a table without such rows they see all
+  /// A switch of the same table that must be on, or off, for the parameter to have an effect;
+  /// empty: none.
+  std::string_view needs_on = {}, needs_off = {};
+};
+
 /// One parameter. `value` is the default (`derived`: none); min and max are inclusive.
 struct Param {
   std::string_view key, unit;
@@ -27,7 +38,31 @@ struct Param {
   std::span<const Word> words = {};  ///< words accepted instead of a number; if `words_only`, nothing else is
   bool words_only = false;
   std::string_view excludes = {};  ///< a key that must not be given together with this one
+  Slider slider = {};
+
+  /// The same parameter with that slider.
+  constexpr Param shown(const Slider& by) const {
+    Param own = *this;
+    own.slider = by;
+    return own;
+  }
 };
+
+/// Whether sliders of a table cover values that the parameters may have, and need switches that the
+/// table has.
+constexpr bool has_right_sliders(std::span<const Param> table) {
+  const auto is_switch = [&](std::string_view key) {
+    for (const Param& p : table)
+      if (p.key == key) return p.words_only;
+    return key.empty();
+  };
+  for (const Param& p : table) {
+    const Slider& s = p.slider;
+    if (s.min < p.min || s.max > p.max || s.min >= s.max) return false;  // false for what is derived
+    if (!is_switch(s.needs_on) || !is_switch(s.needs_off)) return false;
+  }
+  return true;
+}
 
 inline constexpr Word flag_words[] = {{"false", 0}, {"true", 1}};
 

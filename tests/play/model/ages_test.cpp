@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "dreampm/play/panels/panels.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::ages_test {
 namespace {
@@ -20,7 +20,7 @@ std::vector<float> ages_of(Playground& p, std::size_t material) {
 }
 
 TEST(Ages, CountFromWhenMatterCameIn) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"set color_by 5", "frames 6"});
   EXPECT_EQ(p.frame()->value_label, "age");
   EXPECT_EQ(p.frame()->value_unit, "s");

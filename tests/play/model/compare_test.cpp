@@ -8,7 +8,7 @@
 #include <string>
 #include <tuple>
 
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::compare_test {
 namespace {
@@ -29,7 +29,7 @@ double mean_height(const Frame& side) {
 }
 
 TEST(Compare, BIsACopyWithAnotherMatterInPlaceOfTheMainOne) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 8"});
   EXPECT_EQ(p.frame()->other, nullptr);
   const std::uint64_t alone = p.hash();
@@ -64,7 +64,7 @@ TEST(Compare, BIsACopyWithAnotherMatterInPlaceOfTheMainOne) {
 }
 
 TEST(Compare, TheSameMatterUnderTheSameHandsDoesTheSame) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 4", "compare on", "push 0.06 0.05 0.12 0.08 1 0.5 0", "frames 3", "release", "set matter 3",
            "drop box 0.2 0.3 0.12 0.08", "frames 4", "grab 0.28 0.08 0.12 0.05", "pull 0.3 0.2 0.12", "frames 4",
            "pour 0.1 0.3 0.12 0.03 0 -1.5 0", "set gravity.x 3", "frames 4", "pour off", "cut 0.28 0.08 0.12 0 1 0 0.4",
@@ -74,7 +74,7 @@ TEST(Compare, TheSameMatterUnderTheSameHandsDoesTheSame) {
 }
 
 TEST(Compare, SlidersAreOfTheChosenSide) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"compare on", "frames 4", "compare side B", "set material.water.viscosity 20", "frames 30"});
   const std::shared_ptr<const Frame> frame = p.frame();
   EXPECT_EQ(frame->side, 'B');
@@ -88,7 +88,7 @@ TEST(Compare, SlidersAreOfTheChosenSide) {
 }
 
 TEST(Compare, AnEditOfOneSideIsUndoneOnBoth) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"compare on", "frames 4", "erase 0.05 0.05 0.1 0.05", "frames 2"});
   const std::uint64_t before = p.hash();
   const double then = p.simulation().time();
@@ -106,7 +106,7 @@ TEST(Compare, AnEditOfOneSideIsUndoneOnBoth) {
 
 // Where stone still stands a crate cannot come in, and where the water was it can.
 TEST(Compare, WhatOneSideRefusesTheOtherDoes) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"compare on stone", "frames 24", "drop crate 0.07 0.16 0.12 0.06"});
   EXPECT_EQ(p.frame()->side_a().bodies.size(), 1u);
   EXPECT_EQ(p.frame()->side_b().bodies.size(), 0u) << "stone stands as high as it began";
@@ -127,21 +127,21 @@ TEST(Compare, ReplaysToTheSameBits) {
   for (const std::size_t end : {lines.size() - 2, lines.size()}) {
     std::uint64_t one = 0;
     for (const int threads : {1, 2}) {
-      Playground p(small_stage(), quiet_options(threads));
+      Playground p(small_scene(), quiet_options(threads));
       play(p, {lines.begin(), lines.begin() + static_cast<std::ptrdiff_t>(end)});
       if (threads == 1) one = p.hash();
       EXPECT_EQ(p.hash(), one);
     }
   }
   // Ticks whose steps were counted, with a clock that is short.
-  Playground a(small_stage(), quiet_options()), b(small_stage(), quiet_options());
+  Playground a(small_scene(), quiet_options()), b(small_scene(), quiet_options());
   play(a, {"compare on honey"}), play(b, {"compare on honey"});
   for (int n = 0; n < 4; ++n) b.tick({a.tick({std::nullopt, 2e-3}), {}});
   EXPECT_EQ(a.hash(), b.hash());
 }
 
 TEST(Compare, OpensAnotherStageForBoth) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"compare on honey", "open snowball", "frames 1"});
   const std::shared_ptr<const Frame> frame = p.frame();
   ASSERT_NE(frame->other, nullptr);
@@ -152,7 +152,7 @@ TEST(Compare, OpensAnotherStageForBoth) {
 }
 
 TEST(Compare, AJetOfTheMainMatterIsTheOtherOneOnB) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"erase 0.2 0.2 0.12 0.5", "drop box 0.2 0.1 0.12 0.08", "compare on honey", "set matter 0",
            "pour 0.2 0.3 0.12 0.03 0 -1.5 0", "frames 5", "pour off"});
   const std::shared_ptr<const Frame> frame = p.frame();
@@ -162,7 +162,7 @@ TEST(Compare, AJetOfTheMainMatterIsTheOtherOneOnB) {
 }
 
 TEST(Compare, SaysWhatIsWrong) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   EXPECT_THAT(refusal(p, "compare off"), HasSubstr("nothing is compared"));
   EXPECT_THAT(refusal(p, "compare side B"), HasSubstr("compare on"));
   EXPECT_THAT(refusal(p, "compare on lava"), HasSubstr("there are water, honey"));
@@ -173,7 +173,7 @@ TEST(Compare, SaysWhatIsWrong) {
 }
 
 TEST(Compare, KeepsStepInSlowMotion) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"compare on", "set speed 0.03125", "frames 200"});
   EXPECT_GT(p.simulation().time(), 0.09);
   EXPECT_EQ(p.second_simulation()->time(), p.simulation().time());
@@ -181,7 +181,7 @@ TEST(Compare, KeepsStepInSlowMotion) {
 }
 
 TEST(Compare, ThePastIsThereAgainAfterwards) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 12"});
   const std::uint64_t before = p.hash();
   play(p, {"erase 0.05 0.05 0.1 0.05", "frames 12", "compare on honey", "frames 6"});
@@ -194,7 +194,7 @@ TEST(Compare, AFilmIsOneOfTheChosenSide) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "compare-film";
   std::filesystem::create_directories(folder);
   const std::string file = (folder / "a.mp4").string();
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"film " + file, "compare on honey", "frames 2"});
   EXPECT_EQ(p.frame()->film, file);
   play(p, {"compare side B"});

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "dreampm/model/scene.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::files_test {
 namespace {
@@ -21,7 +21,7 @@ std::filesystem::path fresh_folder(const std::string& name) {
 
 TEST(Playground, WhatItSavesGoesOnToTheBit) {
   const std::filesystem::path folder = fresh_folder("play-save");
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   // Matter of all kinds of state, in the midst of a frame.
   play(p, {"set material.water.viscosity 0.002", "frames 19", "set matter 5", "drop sphere 0.2 0.3 0.12 0.08",
            "set matter 9", "drop box 0.32 0.3 0.12 0.06", "set gravity.x 3", "frames 9", "steps 3",
@@ -40,7 +40,7 @@ TEST(Playground, WhatItSavesGoesOnToTheBit) {
 // With what a hand leaves behind: a pin, and a crate that floats.
 TEST(Playground, WhatItSavesWithABodyAndAPinGoesOnToTheBit) {
   const std::filesystem::path folder = fresh_folder("play-save-all");
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 2", "drop crate 0.06 0.26 0.12 0.06", "pin 0.28 0.08 0.12 0.04", "frames 20", "steps 2",
            "save " + (folder / "tank.yaml").string()});
   Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
@@ -78,7 +78,7 @@ TEST(Playground, WhatItSavesHasBodiesAndPinsWhereTheyAre) {
 }
 
 TEST(Playground, OpensOtherStagesAndRefusesWhatIsNone) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   EXPECT_THAT(refusal(p, "open nowhere"), HasSubstr("dam-break"));
   EXPECT_EQ(p.frame()->story, "tank");
   p.act({"open", {"report", "2"}});

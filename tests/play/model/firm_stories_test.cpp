@@ -9,7 +9,7 @@
 #include "dreampm/play/model/firmness.h"
 #include "dreampm/play/model/live_range.h"
 #include "dreampm/play/model/stories.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::firm_stories_test {
 namespace {

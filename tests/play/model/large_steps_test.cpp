@@ -13,8 +13,8 @@
 #include "dreampm/play/model/random_actions.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/play/panels/panels.h"
-#include "play/hand.h"
-#include "play/small_stage.h"
+#include "play/app_fixture.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::large_steps_test {
 namespace {
@@ -72,7 +72,7 @@ std::uint64_t back_and_on(Playground& p) {
 TEST(LargeSteps, HandsRepeatThemselvesForAnyNumberOfThreads) {
   std::uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Playground p(large_step_stage(), quiet_options(threads));
+    Playground p(large_step_scene(), quiet_options(threads));
     play(p, busy);
     if (threads == 1) one = p.hash();
     EXPECT_EQ(p.hash(), one);
@@ -91,8 +91,8 @@ double middle(Playground& p, int axis) {
 }
 
 TEST(LargeSteps, APushTakesWaterAlongAndAPinHoldsIt) {
-  Playground still(large_step_stage(), quiet_options()), pushed(large_step_stage(), quiet_options()),
-      held(large_step_stage(), quiet_options());
+  Playground still(large_step_scene(), quiet_options()), pushed(large_step_scene(), quiet_options()),
+      held(large_step_scene(), quiet_options());
   play(still, {"frames 12"});
   play(pushed, {"push 0.06 0.1 0.12 0.3 3 0 0", "frames 12"});
   play(held, {"pin 0.06 0.1 0.12 0.6", "frames 12"});
@@ -103,7 +103,7 @@ TEST(LargeSteps, APushTakesWaterAlongAndAPinHoldsIt) {
 TEST(LargeSteps, RigidBodiesAreDroppedFloatAndAreHeld) {
   std::uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Playground p(large_step_stage(), quiet_options(threads));
+    Playground p(large_step_scene(), quiet_options(threads));
     play(p, {"frames 2", "drop ball 0.2 0.3 0.12 0.1", "frames 90"});
     const auto center = [&] { return p.simulation().collider("ball-1").pose({0.2, 0.3, 0.12}); };
     // Water is 0.06 m deep, and a ball of a quarter of its density is mostly above it.
@@ -126,7 +126,7 @@ TEST(LargeSteps, RigidBodiesAreDroppedFloatAndAreHeld) {
 TEST(LargeSteps, JellyFallsInAndIsHeldAndStiffened) {
   std::uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Playground p(large_step_stage(), quiet_options(threads));
+    Playground p(large_step_scene(), quiet_options(threads));
     play(p, {"frames 30", "set matter 3", "drop box 0.2 0.3 0.12 0.1", "frames 20", "grab 0.2 0.1 0.12 0.06",
              "pull 0.2 0.2 0.12", "frames 20", "release", "set material.jelly.youngs_modulus 100000", "frames 20",
              "cut 0.2 0.05 0.12 1 0 0 0.4", "frames 5", "undo", "frames 10"});
@@ -144,7 +144,7 @@ TEST(LargeSteps, JellyFallsInAndIsHeldAndStiffened) {
 TEST(LargeSteps, HandsThatDoAnythingLoseNothing) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     RandomActions hands(seed);
-    Playground p(large_step_stage(), quiet_options());
+    Playground p(large_step_scene(), quiet_options());
     for (int n = 0; n < 60; ++n) {
       const std::shared_ptr<const Frame> frame = p.frame();
       const Action action = hands.next(*frame);
@@ -165,7 +165,7 @@ TEST(LargeSteps, HandsThatDoAnythingLoseNothing) {
 
 // As one that takes longer than a tick may.
 TEST(LargeSteps, WallsComeInwardUntilWaterFillsTheBox) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   const double all = static_cast<double>(p.frame()->particles) * 8e-6;
   play(p, {"frames 10", "wall x_max 0.2", "wall y_max 0.1", "frames 80"});
   const Vec3d room = p.frame()->room.size();
@@ -177,7 +177,7 @@ TEST(LargeSteps, WallsComeInwardUntilWaterFillsTheBox) {
 }
 
 TEST(LargeSteps, WhatIsPouredAndErasedIsCounted) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   const std::size_t first = p.frame()->particles;
   play(p, {"pour 0.3 0.3 0.12 0.06 0 -1.5 0", "frames 20", "pour off"});
   const std::size_t poured = p.frame()->particles;
@@ -190,7 +190,7 @@ TEST(LargeSteps, WhatIsPouredAndErasedIsCounted) {
 }
 
 TEST(LargeSteps, GoingBackAndOnGivesTheSameBits) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   play(p, {"frames 30"});
   const std::uint64_t once = back_and_on(p);
   EXPECT_LT(p.frame()->time, 0.4 + 15.0 / 60);
@@ -207,7 +207,7 @@ int steps_of(Playground& p, int frames) {
 }
 
 TEST(LargeSteps, TheSliderOfCellsInAStepTakesThePlaceOfStiffness) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   std::vector<std::string> ids;
   for (const ControlInfo& c : *p.frame()->controls) ids.push_back(c.id);
   EXPECT_THAT(ids, testing::IsSupersetOf({"cfl", "material.water.viscosity", "material.water.density"}));
@@ -226,12 +226,12 @@ TEST(LargeSteps, TheSliderOfCellsInAStepTakesThePlaceOfStiffness) {
   play(p, {"frames 1"});
   EXPECT_EQ(p.simulation().scene().model().time.cfl, 2);
   EXPECT_THAT(refusal(p, "set cfl 4"), HasSubstr("between 0.5 and 3"));
-  Playground other(small_stage(), quiet_options());
+  Playground other(small_scene(), quiet_options());
   EXPECT_THAT(refusal(other, "set cfl 1"), HasSubstr("no control 'cfl'"));
 }
 
 TEST(LargeSteps, SlidersOfMatterEndWhereTheSolverDoes) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   const auto frame = p.frame();
   for (std::size_t i = 0; i < frame->controls->size(); ++i) {
     const ControlInfo& c = (*frame->controls)[i];
@@ -250,7 +250,7 @@ TEST(LargeSteps, SlidersOfMatterEndWhereTheSolverDoes) {
 }
 
 TEST(LargeSteps, WhatTheSolverCannotDoIsRefusedInWordsAndChangesNothing) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   play(p, {"frames 5", "set matter 1"});
   const std::uint64_t before = p.hash();
   EXPECT_THAT(refusal(p, "drop box 0.3 0.3 0.12 0.08"),
@@ -269,7 +269,7 @@ TEST(LargeSteps, WhatTheSolverCannotDoIsRefusedInWordsAndChangesNothing) {
 }
 
 TEST(LargeSteps, SandAndSnowAreDroppedIntoWaterAndTakenBack) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   play(p, {"frames 5"});
   const std::uint64_t before = p.hash();
   const std::size_t count = p.frame()->particles;
@@ -282,7 +282,7 @@ TEST(LargeSteps, SandAndSnowAreDroppedIntoWaterAndTakenBack) {
 }
 
 TEST(LargeSteps, SidesAreComparedByTheirNumbers) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   EXPECT_EQ(compare_with(p.frame()->settings.compare_with).text(), "compare on honey");
   play(p, {"frames 5", "compare on", "frames 5"});
   ASSERT_NE(p.second_simulation(), nullptr);
@@ -333,7 +333,7 @@ TEST(LargeSteps, TheOtherSolverIsAVerbAway) {
 }
 
 TEST(LargeSteps, PressureIsThatOfTheCells) {
-  Playground p(large_step_stage("colliders: {shelf: {shape: {box: {min: [0.12, -1, -1], max: [1, 1, 1]}}}}\n"),
+  Playground p(large_step_scene("colliders: {shelf: {shape: {box: {min: [0.12, -1, -1], max: [1, 1, 1]}}}}\n"),
                quiet_options());
   play(p, {"frames 30", "set color_by 2"});
   const auto frame = p.frame();
@@ -348,7 +348,7 @@ TEST(LargeSteps, PressureIsThatOfTheCells) {
 TEST(LargeSteps, WhatIsSavedGoesOnToTheSameBits) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / fmt::format("dreampm-large-steps-{}", ::getpid());
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   const std::string file = (folder / "moment.yaml").string();
   play(p, {"set cfl 1", "frames 12", "pour 0.3 0.3 0.12 0.06 0 -1.5 0", "frames 4", "pour off", "frames 1"});
   p.act({"save", {file}});
@@ -362,7 +362,7 @@ TEST(LargeSteps, WhatIsSavedGoesOnToTheSameBits) {
 
 // A large step lasts for many pictures then, and none of them stands still.
 TEST(LargeSteps, SlowMotionMovesInEachPicture) {
-  Playground p(large_step_stage(), quiet_options());
+  Playground p(large_step_scene(), quiet_options());
   play(p, {"frames 12", "set speed 0.0625", "frames 2"});
   double before = middle(p, 0);
   int stood = 0;
@@ -377,12 +377,12 @@ TEST(LargeSteps, SlowMotionMovesInEachPicture) {
   EXPECT_GT(least, 0.4 * most) << "it does not leap";
 }
 
-class LargeStepsHand : public Hand {
+class LargeStepsHand : public AppFixture {
  protected:
   void SetUp() override {
     window_width = 1280, window_height = 1400;
     context.emplace();
-    playground.emplace(large_step_stage(), quiet_options());
+    playground.emplace(large_step_scene(), quiet_options());
     play(*playground, {"frames 6"});
     start();
   }
@@ -413,7 +413,7 @@ TEST_F(LargeStepsHand, ButtonsAndKeysChooseTheSolver) {
   EXPECT_THAT(posted[0], testing::StartsWith("set cfl 0.6"));
 }
 
-TEST_F(Hand, TheOtherSolverIsOffWhereItCannotDo) {
+TEST_F(AppFixture, TheOtherSolverIsOffWhereItCannotDo) {
   playground.emplace(load_play_scene("hourglass"), quiet_options());
   start();
   point_at("solver projection"), click();

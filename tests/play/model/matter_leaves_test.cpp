@@ -10,7 +10,7 @@
 #include <filesystem>
 
 #include "dreampm/play/window/headless.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::matter_leaves_test {
 namespace {
@@ -39,6 +39,26 @@ TEST(MatterThatLeaves, IsSaidWithTheWallAndComesBackByUndo) {
   EXPECT_EQ(value_of(p, "gravity.y"), -9.81);
   play(p, {"frames 30"});
   EXPECT_EQ(p.simulation().particle_count(), all) << "they stay";
+}
+
+// One message counts on, whenever a picture of it is made.
+TEST(MatterThatLeaves, IsCountedByItsMessageToTheLast) {
+  Playground p(without_lid(), quiet_options());
+  const std::size_t all = p.simulation().particle_count();
+  play(p, {"frames 5", "set gravity.y 10", "done"});
+  std::uint64_t number = 0;
+  int pictures = 0;
+  for (int n = 0; n < 60; ++n) {
+    play(p, {"frames 1"});
+    const std::shared_ptr<const Frame> frame = p.frame();
+    const std::size_t gone = all - p.simulation().particle_count();
+    if (gone == 0) continue;
+    EXPECT_EQ(frame->message, fmt::format("{} particle{} left by the top: Undo", grouped(gone), gone == 1 ? "" : "s"));
+    if (number == 0) number = frame->message_number;
+    EXPECT_EQ(frame->message_number, number);
+    ++pictures;
+  }
+  EXPECT_GT(pictures, 5);
 }
 
 TEST(MatterThatLeaves, ByAPushIsBackAfterUndo) {
@@ -81,7 +101,7 @@ TEST(Dragon, FallsWithoutADownloadAndSaysWhichOne) {
   const std::filesystem::path folder =
       std::filesystem::path(testing::TempDir()) / ("no-models-" + std::to_string(::getpid()));
   ::setenv("DREAMPM_CACHE", folder.c_str(), 1);
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   const std::size_t before = p.simulation().particle_count();
   play(p, {"set matter 3", "drop dragon 0.2 0.25 0.12 0.36", "frames 3"});
   // Of a cube of that length it fills a twenty-seventh; what is thin has fewer particles.
@@ -93,7 +113,7 @@ TEST(Dragon, FallsWithoutADownloadAndSaysWhichOne) {
 }
 
 TEST(Dragon, AFileThatCannotBeReadLeavesNoMaterialBehind) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   const std::size_t before = p.frame()->matter.size();
   EXPECT_THAT(refusal(p, "set matter 6"), "");
   EXPECT_THAT(refusal(p, "drop none.obj 0.2 0.25 0.12 0.2"), HasSubstr("none.obj"));

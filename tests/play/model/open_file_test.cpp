@@ -11,7 +11,7 @@
 
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/solver_choice.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::open_file_test {
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "dreampm/play/model/playground.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::play_state_test {
 namespace {
@@ -30,7 +30,7 @@ TEST(PlayState, BeginsAnewWithAnotherSceneButForWhatTheUserSet) {
   EXPECT_TRUE(state.targets.empty());
   EXPECT_TRUE(state.looks.empty());
   EXPECT_EQ(state.losses.all[0], 0u);
-  EXPECT_EQ(state.clock.owed, 0);
+  EXPECT_EQ(state.clock.pending, 0);
   EXPECT_FALSE(state.clock.single_step || state.clock.restart_is_due);
   EXPECT_EQ(state.clock.failures, 0);
   EXPECT_TRUE(state.settings.paused);
@@ -42,16 +42,16 @@ TEST(PlayState, AJumpEndsWhatIsUnderWayAndKeepsTheRest) {
   PlayState state = used();
   begin_anew<&PlayFieldUse::jumps>(state);
   EXPECT_TRUE(state.targets.empty());
-  EXPECT_EQ(state.clock.owed, 0.01);
+  EXPECT_EQ(state.clock.pending, 0.01);
   EXPECT_EQ(state.looks.size(), 1u);
   begin_anew<&PlayFieldUse::ends>(state);
-  EXPECT_EQ(state.clock.owed, 0);
+  EXPECT_EQ(state.clock.pending, 0);
   EXPECT_EQ(state.losses.all[0], 7u);
 }
 
 // Names of what is dropped count on, and both sides know since when matter is there.
 TEST(PlayState, ASecondSideHasAllThatTheFirstRemembers) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"set color_by 5", "frames 20", "drop ball 0.2 0.3 0.12 0.06", "pour 0.3 0.3 0.2 0.03 0 -1.5 0", "frames 10",
            "pour off", "frames 20", "compare on", "drop ball 0.1 0.3 0.12 0.06", "frames 1"});
   const std::shared_ptr<const Frame> frame = p.frame();

@@ -12,7 +12,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/random_actions.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::playground_test {
 namespace {
@@ -53,7 +53,7 @@ const std::vector<std::string> busy{"frames 4",
 TEST(Playground, RepeatsItselfForAnyNumberOfThreads) {
   std::uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Playground p(small_stage(), quiet_options(threads));
+    Playground p(small_scene(), quiet_options(threads));
     play(p, busy);
     if (threads == 1) one = p.hash();
     EXPECT_EQ(p.hash(), one);
@@ -62,7 +62,7 @@ TEST(Playground, RepeatsItselfForAnyNumberOfThreads) {
 }
 
 TEST(Playground, StepsThatWereCountedGiveTheSameAgain) {
-  Playground a(small_stage(), quiet_options()), b(small_stage(), quiet_options());
+  Playground a(small_scene(), quiet_options()), b(small_scene(), quiet_options());
   const int first = a.tick({}), second = a.tick({std::nullopt, 1e-4});
   EXPECT_GT(first, 0);
   EXPECT_GT(second, 0);
@@ -72,7 +72,7 @@ TEST(Playground, StepsThatWereCountedGiveTheSameAgain) {
 }
 
 TEST(Playground, AFrameIsASixtiethOfASecondOrSlower) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   for (int n = 0; n < 30; ++n) p.tick({});
   EXPECT_NEAR(p.simulation().time(), 0.5, 0.004);
   play(p, {"set speed 0.25", "frames 30"});
@@ -87,7 +87,7 @@ TEST(Playground, AFrameIsASixtiethOfASecondOrSlower) {
 }
 
 TEST(Playground, EveryControlTakesItsWholeRangeAndSaysWhatItHas) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   const auto controls = p.frame()->controls;
   std::set<std::string> ids;
   for (const ControlInfo& c : *controls) {
@@ -112,7 +112,7 @@ TEST(Playground, EveryControlTakesItsWholeRangeAndSaysWhatItHas) {
 }
 
 TEST(Playground, AMaterialComesToWhatWasAskedForByAndBy) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"set material.jelly.youngs_modulus 1000000", "frames 1"});
   const auto now = [&] {
     for (const std::string& line : {p.simulation().scene().yaml()}) {
@@ -128,7 +128,7 @@ TEST(Playground, AMaterialComesToWhatWasAskedForByAndBy) {
 }
 
 TEST(Playground, UndoAndRedoGoToTheVeryBits) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 5"});
   const std::uint64_t before = p.hash();
   play(p, {"erase 0.05 0.05 0.1 0.05"});
@@ -141,12 +141,12 @@ TEST(Playground, UndoAndRedoGoToTheVeryBits) {
   play(p, {"undo", "frames 3", "set material.water.viscosity 3", "frames 20", "undo"});
   EXPECT_NEAR(value_of(p, "material.water.viscosity"), 1e-3, 1e-5);
   EXPECT_THAT(refusal(p, "redo"), "") << "one edit is ahead";
-  Playground fresh(small_stage(), quiet_options());
+  Playground fresh(small_scene(), quiet_options());
   EXPECT_THAT(refusal(fresh, "undo"), HasSubstr("nothing to undo"));
 }
 
 TEST(Playground, ATiltOfTheBoxIsOneEdit) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 5"});
   for (int n = 1; n <= 4; ++n)
     play(p, {"set gravity.x " + text_of(n), "set gravity.z 1", "set gravity.y -9", "frames 1"});
@@ -157,7 +157,7 @@ TEST(Playground, ATiltOfTheBoxIsOneEdit) {
 }
 
 TEST(Playground, GoesBackInTime) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   std::vector<double> times;
   for (int n = 0; n < 120; ++n) p.tick({}), times.push_back(p.simulation().time());
   const double now = p.simulation().time();
@@ -175,7 +175,7 @@ TEST(Playground, GoesBackInTime) {
 }
 
 TEST(Playground, AHandOfThePastLetsGo) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"set gravity.y 0", "frames 5", "push 0.28 0.08 0.12 0.08 2 0 0", "frames 12", "pin 0.06 0.05 0.12 0.05",
            "frames 12", "pin off", "release", "frames 30"});
   // Back to where the hand pushed and the pin held.
@@ -187,7 +187,7 @@ TEST(Playground, AHandOfThePastLetsGo) {
 }
 
 TEST(Playground, AGrabCarriesMatterToTheHand) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"set gravity.y 0", "frames 2", "grab 0.28 0.08 0.12 0.06", "pull 0.28 0.25 0.12", "frames 40"});
   double y = 0;
   const auto frame = p.frame();
@@ -197,7 +197,7 @@ TEST(Playground, AGrabCarriesMatterToTheHand) {
 }
 
 TEST(Playground, APinHoldsWhatWouldFall) {
-  Playground free(small_stage(), quiet_options()), held(small_stage(), quiet_options());
+  Playground free(small_scene(), quiet_options()), held(small_scene(), quiet_options());
   play(free, {"frames 15"});
   play(held, {"pin 0.28 0.08 0.12 0.1", "frames 15"});
   const auto lowest = [](Playground& p) {
@@ -227,7 +227,7 @@ TEST(Playground, AReportMaterialBeginsAnewOrForgetsItsDeformation) {
 }
 
 TEST(Playground, EachEditThatIsDoneIsTakenBackByItself) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 2", "set gravity.y -5", "set gravity.y -4", "done", "frames 2", "set gravity.y -3",
            "set gravity.y -2", "done", "frames 2", "undo"});
   EXPECT_EQ(value_of(p, "gravity.y"), -4);
@@ -245,7 +245,7 @@ double resident_pages() {
 }
 
 TEST(Playground, MemoryStaysFlat) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   double early = 0;
   for (int n = 1; n <= 120; ++n) {
     play(p, {"set matter " + std::to_string(n % 3), "pour 0.2 0.3 0.12 0.04 0 -1.5 0", "frames 4", "pour off",
@@ -260,7 +260,7 @@ TEST(Playground, MemoryStaysFlat) {
 /// Whatever is typed and dragged, nothing breaks, and nothing is lost but what is taken out.
 TEST(Playground, SurvivesRandomHands) {
   for (const std::uint64_t seed : {1, 2}) {
-    Playground p(small_stage(), quiet_options(2));
+    Playground p(small_scene(), quiet_options(2));
     RandomActions hands(seed);
     for (int turn = 0; turn < 60; ++turn) {
       try {
@@ -279,7 +279,7 @@ TEST(Playground, SurvivesRandomHands) {
 
 TEST(Playground, SlowMotionMovesWhereAStepIsLongerThanATick) {
   for (const Playground::Limit& limit : {Playground::Limit{}, Playground::Limit{std::nullopt, 0.1}}) {
-    Playground p(small_stage(), quiet_options());
+    Playground p(small_scene(), quiet_options());
     play(p, {"set speed 0.015625"});
     ASSERT_LT(1 / 64.0 / 60, 0.5 * p.simulation().dt()) << "what a tick asks for is too little for a step";
     for (int n = 0; n < 256; ++n) p.tick(limit);
@@ -288,7 +288,7 @@ TEST(Playground, SlowMotionMovesWhereAStepIsLongerThanATick) {
 }
 
 TEST(Playground, RewindAfterUndoLeadsToWhatIsNow) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 30"});
   const std::size_t all = p.simulation().particle_count();
   play(p, {"erase 0.05 0.05 0.1 0.08", "frames 60"});
@@ -301,7 +301,7 @@ TEST(Playground, RewindAfterUndoLeadsToWhatIsNow) {
 
 TEST(Playground, WhatDoesNotGoWithASceneIsSaidAndTheWorldGoesOn) {
   // A collider of the name of a matter that is poured.
-  PlayScene stage = small_stage();
+  PlayScene stage = small_scene();
   stage.scene = parse_scene(stage.scene.yaml() +
                                 "colliders:\n  stone: {shape: {box: {min: [0.34, 0, 0], max: "
                                 "[0.4, 0.05, 0.05]}}}\n",
@@ -322,7 +322,7 @@ TEST(Playground, WhatDoesNotGoWithASceneIsSaidAndTheWorldGoesOn) {
 }
 
 TEST(Playground, SingleEditsAreUndoneOneByOne) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 6", "restart", "frames 12"});
   const std::uint64_t before = p.hash();
   play(p, {"restart", "frames 2", "undo"});
@@ -340,7 +340,7 @@ TEST(Playground, SingleEditsAreUndoneOneByOne) {
 }
 
 TEST(Playground, LooksStayWithTheirMatter) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   const auto look = [&](const std::string& name) {
     for (const MatterFrame& m : p.frame()->matter)
       if (m.name == name) return *m.look;
@@ -361,7 +361,7 @@ TEST(Playground, LooksStayWithTheirMatter) {
 }
 
 TEST(Playground, BallsAreOfTheReportAlone) {
-  Playground report(load_play_scene("report"), quiet_options()), tank(small_stage(), quiet_options());
+  Playground report(load_play_scene("report"), quiet_options()), tank(small_scene(), quiet_options());
   for (const MatterFrame& m : report.frame()->matter) {
     EXPECT_NEAR(static_cast<double>(m.look->ball) * report.frame()->spacing, 0.01, 1e-6) << "m";
     EXPECT_FALSE(m.look->grains);

@@ -16,7 +16,7 @@
 #include "dreampm/io/run_record.h"
 #include "dreampm/play/window/headless.h"
 #include "dreampm/simulation.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::rendering_test {
 namespace {
@@ -36,7 +36,7 @@ class Films : public testing::Test {
     std::filesystem::current_path(folder);
     PlayOptions options = quiet_options();
     options.program = DM_COMMAND;
-    playground.emplace(tiny_stage(), options);
+    playground.emplace(tiny_scene(), options);
   }
   void TearDown() override {
     playground.reset();
@@ -44,9 +44,9 @@ class Films : public testing::Test {
     std::filesystem::remove_all(folder);
   }
 
-  static PlayScene tiny_stage() {
+  static PlayScene tiny_scene() {
     return {"tank",
-            small_stage().scene.with({"space.max=[0.4, 0.4, 0.25]", "render.size=[96, 64]", "render.samples=4"})};
+            small_scene().scene.with({"space.max=[0.4, 0.4, 0.25]", "render.size=[96, 64]", "render.samples=4"})};
   }
   std::shared_ptr<const RenderStatus> status() { return playground->frame()->rendering; }
   template <class Done>
@@ -142,11 +142,11 @@ TEST_F(Films, AreWaitedForWithoutAWindow) {
   replace_file_text("script.txt", "frames 4\nrender film.yaml 0.05\n");
   HeadlessOptions o;
   o.play = quiet_options(), o.play.program = DM_COMMAND, o.script = "script.txt", o.frames = 0;
-  play_headless(tiny_stage(), o);
+  play_headless(tiny_scene(), o);
   EXPECT_TRUE(std::filesystem::exists("out/film/film.mp4"));
   std::filesystem::remove_all("out");
   replace_file_text("out", "no folder");
-  EXPECT_THROW(play_headless(tiny_stage(), o), RunError);
+  EXPECT_THROW(play_headless(tiny_scene(), o), RunError);
 }
 
 TEST_F(Films, ThatWereOnlyEstimatedLeaveNothing) {
@@ -185,7 +185,7 @@ TEST_F(Films, ThatDoNotEndWhenInterruptedAreKilled) {
 }
 
 TEST_F(Films, NeedTheCommand) {
-  playground.emplace(tiny_stage(), quiet_options());
+  playground.emplace(tiny_scene(), quiet_options());
   play(*playground, {"refused render film.yaml 1"});
   EXPECT_EQ(status(), nullptr);
 }

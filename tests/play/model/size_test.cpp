@@ -4,14 +4,14 @@
 #include <string>
 
 #include "dreampm/play/model/size_chooser.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::size_test {
 namespace {
 using namespace test;
 
 TEST(Size, HasFewerOrMoreParticlesOfTheSameWorld) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   const auto medium = static_cast<double>(p.frame()->particles);
   p.act(Action::parse("size small"));
   EXPECT_NEAR(static_cast<double>(p.frame()->particles) / medium, 0.4, 0.15);
@@ -20,11 +20,11 @@ TEST(Size, HasFewerOrMoreParticlesOfTheSameWorld) {
   p.act(Action::parse("size large"));
   EXPECT_NEAR(static_cast<double>(p.frame()->particles) / medium, 2, 0.5);
   // In whole cells.
-  const Vec3d size = p.frame()->domain.size(), own = small_stage().scene.max() - small_stage().scene.min();
-  for (int a = 0; a < 3; ++a) EXPECT_NEAR(size[a], own[a], 2 * small_stage().scene.spacing());
+  const Vec3d size = p.frame()->domain.size(), own = small_scene().scene.max() - small_scene().scene.min();
+  for (int a = 0; a < 3; ++a) EXPECT_NEAR(size[a], own[a], 2 * small_scene().scene.spacing());
   p.act(Action::parse("size medium"));
   EXPECT_EQ(static_cast<double>(p.frame()->particles), medium);
-  EXPECT_EQ(p.frame()->spacing, small_stage().scene.spacing());
+  EXPECT_EQ(p.frame()->spacing, small_scene().scene.spacing());
   // Undo has what was before; a story that is opened then has the size that was chosen.
   p.act(Action::parse("undo"));
   EXPECT_EQ(p.frame()->size, 2U);
@@ -38,7 +38,7 @@ TEST(Size, AWorldWithAGridOfItsOwnKeepsIt) {
   Playground p(load_play_scene("report"), quiet_options());
   EXPECT_FALSE(p.frame()->can_resize);
   EXPECT_NE(refusal(p, "size small").find("a grid of its own"), std::string::npos);
-  Playground other(small_stage(), quiet_options());
+  Playground other(small_scene(), quiet_options());
   other.act(Action::parse("size small"));
   other.act(Action::parse("open report"));
   EXPECT_FALSE(other.frame()->can_resize) << "it is opened all the same";
@@ -47,7 +47,7 @@ TEST(Size, AWorldWithAGridOfItsOwnKeepsIt) {
 TEST(Size, TheSameLinesGiveTheSameBits) {
   std::uint64_t hash = 0;
   for (int threads = 1; threads <= 2; ++threads) {
-    Playground p(small_stage(), quiet_options(threads));
+    Playground p(small_scene(), quiet_options(threads));
     play(p, {"steps 5", "size small", "steps 20", "push 0.06 0.06 0.12 0.06 1 0 0", "steps 10"});
     if (threads == 1) hash = p.hash();
     EXPECT_EQ(p.hash(), hash);

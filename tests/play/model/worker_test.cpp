@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "dreampm/play/model/solver_choice.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::worker_test {
 namespace {
@@ -39,7 +39,7 @@ TEST(Worker, WhatItRecordsReplaysToTheSameBits) {
   std::vector<std::string> script;
   std::uint64_t steps = 0;
   {
-    Worker worker(small_stage(), quiet_options(), into(script));
+    Worker worker(small_scene(), quiet_options(), into(script));
     EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.steps > 20; }));
     worker.post(Action::parse("set material.water.viscosity 2"));
     worker.post(Action::parse("push 0.06 0.06 0.12 0.06 1 0 0"));
@@ -52,7 +52,7 @@ TEST(Worker, WhatItRecordsReplaysToTheSameBits) {
   }
   std::uint64_t hash = 0;
   for (int turn = 0; turn < 2; ++turn) {
-    Playground again(small_stage(), quiet_options(turn + 1));
+    Playground again(small_scene(), quiet_options(turn + 1));
     play(again, script);
     EXPECT_EQ(again.simulation().steps(), steps);
     if (turn == 0) hash = again.hash();
@@ -66,7 +66,7 @@ TEST(Worker, WhatIsDoneWhilePausedReplaysToo) {
   std::uint64_t steps = 0;
   std::size_t particles = 0;
   {
-    Worker worker(small_stage(), quiet_options(), into(script));
+    Worker worker(small_scene(), quiet_options(), into(script));
     EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.steps > 20; }));
     worker.post(Action::parse("set paused 1"));
     worker.post(Action::parse("set material.jelly.youngs_modulus 500000"));
@@ -84,7 +84,7 @@ TEST(Worker, WhatIsDoneWhilePausedReplaysToo) {
     const std::shared_ptr<const Frame> frame = worker.latest();
     steps = frame->steps, particles = frame->particles;
   }
-  Playground again(small_stage(), quiet_options());
+  Playground again(small_scene(), quiet_options());
   play(again, script);
   EXPECT_EQ(again.simulation().steps(), steps);
   EXPECT_EQ(again.simulation().particle_count(), particles);
@@ -109,7 +109,7 @@ TEST(Worker, PlaysARecordAgain) {
   }
   std::vector<std::string> second;
   {
-    Worker worker(small_stage(), quiet_options(), into(second));
+    Worker worker(small_scene(), quiet_options(), into(second));
     worker.post({"replay", {file.string()}});
     worker.post(Action::parse("push 0.1 0.1 0.1 0.05 1 0 0"));  // a pointer that passes
     EXPECT_TRUE(wait_for(worker, [](const Frame& f) { return f.message == "the record has ended"; }));
@@ -164,7 +164,7 @@ TEST(Worker, WhatATickGaveWayToIsMadeUpForByTheNext) {
 }
 
 TEST(Worker, GoesOnAfterWhatWasRefused) {
-  Worker worker(small_stage(), quiet_options());
+  Worker worker(small_scene(), quiet_options());
   const std::uint64_t number = worker.post(Action::parse("open nowhere"));
   EXPECT_TRUE(wait_for(worker, [&](const Frame& f) { return f.actions >= number; }));
   EXPECT_NE(worker.latest()->message.find("nowhere"), std::string::npos);

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "dreampm/play/model/number_text.h"
-#include "play/hand.h"
+#include "play/app_fixture.h"
 
 namespace dreampm::play::panel_words_test {
 namespace {
@@ -27,10 +27,10 @@ int orange(const RgbImage& image) {
   return count;
 }
 
-class Words : public Hand {
+class Words : public AppFixture {
  protected:
   void SetUp() override {
-    Hand::SetUp();
+    AppFixture::SetUp();
     window_width = 1280, window_height = 720;
     start();
   }

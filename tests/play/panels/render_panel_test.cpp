@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <memory>
 
-#include "play/hand.h"
+#include "play/app_fixture.h"
 
 namespace dreampm::play::render_panel_test {
 namespace {
@@ -14,7 +14,7 @@ using testing::ElementsAre;
 using testing::EndsWith;
 using testing::StartsWith;
 
-class RenderPanel : public test::Hand {};
+class RenderPanel : public test::AppFixture {};
 
 TEST_F(RenderPanel, RenderAsksForAnEstimateAndStartsOnlyWhenTold) {
   window_width = 1280, window_height = 720;
@@ -43,7 +43,7 @@ TEST_F(RenderPanel, AFilmUnderWayIsShownAndTheWindowAsksBeforeItCloses) {
     with.rendering = std::make_shared<const RenderStatus>(film);
     for (int n = 0; n < 3; ++n) {
       input.time += 1.0 / 60;
-      app->take(with, input, window_width, window_height, 1);
+      app->update(with, input, window_width, window_height, 1);
     }
   };
   const auto click_at = [&](const std::string& what) {

@@ -12,8 +12,8 @@
 #include "dreampm/play/model/firmness.h"
 #include "dreampm/play/model/live_range.h"
 #include "dreampm/play/model/matter.h"
-#include "play/hand.h"
-#include "play/small_stage.h"
+#include "play/app_fixture.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::slider_test {
 namespace {
@@ -26,7 +26,7 @@ std::string scene_of(std::string_view name) {
 }
 
 /// A block of 216 particles of that matter under a stone half as high.
-PlayScene loaded_stage(const std::string& matter) {
+PlayScene loaded_scene(const std::string& matter) {
   return {
       "load",
       parse_scene(fmt::format("dreampm: 1\nname: load\nspace: {{min: [0, 0, 0], max: [0.24, 0.4, 0.24], spacing: "
@@ -63,7 +63,7 @@ Shape shape_of(const Playground& p) {
 }
 
 /// A ball of that matter, that high over the floor.
-PlayScene falling_stage(const std::string& matter, double height) {
+PlayScene falling_scene(const std::string& matter, double height) {
   return {"fall",
           parse_scene(fmt::format("dreampm: 1\nname: fall\nspace: {{min: [0, 0, 0], max: [0.4, 1.2, 0.4], spacing: "
                                   "0.02}}\ntime: {{fps: 60}}\nmaterials:\n  soft: {}\nbodies:\n  ball: {{material: "
@@ -107,7 +107,7 @@ class ElasticSliders : public testing::TestWithParam<const char*> {
  protected:
   void under_a_load(const std::string& key) {
     for (const bool high : {false, true}) {
-      Playground p(loaded_stage(scene_of(GetParam())), steady_options());
+      Playground p(loaded_scene(scene_of(GetParam())), steady_options());
       play(p, {"frames 30"});
       to_an_end_and_back(p, key, high);
     }
@@ -118,7 +118,7 @@ TEST_P(ElasticSliders, SoftAndStiffMatterUnderALoadComesBack) { under_a_load("yo
 TEST_P(ElasticSliders, LightAndHeavyMatterUnderALoadComesBack) { under_a_load("density"); }
 TEST_P(ElasticSliders, MatterUnderALoadComesBackWhateverItsPoissonsRatio) { under_a_load("poissons_ratio"); }
 TEST_P(ElasticSliders, MatterThatIsMadeSoftAsItFallsComesBack) {
-  Playground p(falling_stage(scene_of(GetParam()), 0.5), steady_options());
+  Playground p(falling_scene(scene_of(GetParam()), 0.5), steady_options());
   play(p, {"frames 10"});
   to_an_end_and_back(p, "youngs_modulus", false);
 }
@@ -136,10 +136,8 @@ LiveRange live_range(Playground& p, const std::string& id, double step_seconds, 
 
 const std::string modulus = "material.jelly.youngs_modulus", density = "material.jelly.density";
 
-TEST(Sliders, AreSaidOfParametersThatThereAre) { EXPECT_THAT(mistyped_parameters(), testing::IsEmpty()); }
-
 TEST(LiveRange, EndsWhereTimeWouldRunAtAQuarterOfItsPace) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 2"});
   const double cost = 1e-3;
   const double held = live_range(p, modulus, cost).max, light = live_range(p, density, cost).min;
@@ -163,7 +161,7 @@ TEST(LiveRange, EndsWhereTimeWouldRunAtAQuarterOfItsPace) {
 
 // It is not of the machine: it is there where no time of a step is known, and for scripts.
 TEST(LiveRange, EndsWhereSoftMatterWouldBeCrushed) {
-  Playground p(loaded_stage(scene_of("jelly")), quiet_options());
+  Playground p(loaded_scene(scene_of("jelly")), quiet_options());
   play(p, {"frames 30"});
   const std::string id = "material.soft.youngs_modulus";
   const LiveRange rest = live_range(p, id, 0);
@@ -189,13 +187,13 @@ TEST(LiveRange, EndsWhereSoftMatterWouldBeCrushed) {
   EXPECT_NEAR(live_range(p, id, 0).min, 0.4 * rest.min, 1e-6 * rest.min) << "what is set is never cut off";
 }
 
-class HeldSlider : public Hand {
+class HeldSlider : public AppFixture {
  protected:
   void SetUp() override {
-    Hand::SetUp();
+    AppFixture::SetUp();
     PlayOptions slow = quiet_options();
     slow.step_seconds = 1e-3;
-    playground.emplace(small_stage(), slow);
+    playground.emplace(small_scene(), slow);
     play(*playground, {"frames 2"});
     start();
   }

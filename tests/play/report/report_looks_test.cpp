@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::report_looks_test {
 namespace {
@@ -136,7 +136,7 @@ TEST(ReportLooks, ALookIsOneEditThatSetsEverySliderOfIt) {
 }
 
 TEST(ReportLooks, RefusesWhatIsNone) {
-  Playground report(load_play_scene("report", 0), quiet_options()), tank(small_stage(), quiet_options());
+  Playground report(load_play_scene("report", 0), quiet_options()), tank(small_scene(), quiet_options());
   EXPECT_THAT(refusal(report, "look slime"), HasSubstr("no look 'slime'; there are liquid, honey, stone, elastic"));
   EXPECT_THAT(refusal(tank, "look honey"), HasSubstr("open report 1"));
 }

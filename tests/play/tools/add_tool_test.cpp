@@ -7,7 +7,7 @@
 
 #include "dreampm/base/file.h"
 #include "dreampm/play/model/play_model.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 #include "play/tools/stop_tool.h"
 
 namespace dreampm::play::add_tool_test {
@@ -17,7 +17,7 @@ using namespace test;
 double kinetic(const PlayModel& model) { return model.simulation->totals().kinetic; }
 
 TEST(AddATool, TheExampleBringsMatterToRestUntilItEnds) {
-  PlayModel model(small_stage(), quiet_options());
+  PlayModel model(small_scene(), quiet_options());
   for (int n = 0; n < 12; ++n) model.tick({});
   const double before = kinetic(model);
   Stop tool;

@@ -6,7 +6,7 @@
 
 #include "dreampm/model/scene.h"
 #include "dreampm/play/tools/cursor.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::bodies_test {
 namespace {

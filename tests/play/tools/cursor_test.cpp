@@ -5,15 +5,15 @@
 
 #include <algorithm>
 
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::pointer_test {
 namespace {
 using namespace test;
 
 /// A pointer over a playground, and what it posted.
-struct Hand {
-  Playground playground{small_stage(), quiet_options()};
+struct AppFixture {
+  Playground playground{small_scene(), quiet_options()};
   std::vector<Action> posted;
   Cursor pointer{[this](Action a) {
     posted.push_back(a);
@@ -21,7 +21,7 @@ struct Hand {
     return std::uint64_t{posted.size()};
   }};
   double time = 0;
-  Hand() {
+  AppFixture() {
     pointer.resize(800, 600);
     pointer.reset_camera(*playground.frame());
   }
@@ -37,7 +37,7 @@ struct Hand {
 };
 
 TEST(Cursor, FindsMatterBeforeTheFloorAndTheFloorBeforeNothing) {
-  Hand hand;
+  AppFixture hand;
   const auto frame = hand.frame();
   const auto at = [&](const Vec3d& place) {
     const auto p = hand.pointer.camera().project(static_cast<Vec3f>(place), 800, 600);
@@ -53,7 +53,7 @@ TEST(Cursor, FindsMatterBeforeTheFloorAndTheFloorBeforeNothing) {
 
 // Of a few particles a dragon would be crumbs: it is as large as the box has room for.
 TEST(Cursor, ADragonThatIsDroppedIsLargeEnoughToBeOne) {
-  Hand hand;
+  AppFixture hand;
   hand.playground.act(Action::parse("set tool 3"));
   const auto dropped = [&](const std::string& name) {
     const auto at = std::find(drop_names().begin(), drop_names().end(), name) - drop_names().begin();
@@ -70,7 +70,7 @@ TEST(Cursor, ADragonThatIsDroppedIsLargeEnoughToBeOne) {
 }
 
 TEST(Cursor, HoveringPushesAndLeavingLetsGo) {
-  Hand hand;
+  AppFixture hand;
   for (int n = 0; n < 5; ++n) hand.move_to({0.03 + 0.015 * n, 0.16, 0.12});
   EXPECT_TRUE(hand.did("push"));
   ASSERT_TRUE(hand.pointer.mark().has_value());
@@ -80,7 +80,7 @@ TEST(Cursor, HoveringPushesAndLeavingLetsGo) {
 }
 
 TEST(Cursor, ADragOnMatterGrabsAndElsewhereTurnsTheView) {
-  Hand hand;
+  AppFixture hand;
   hand.move_to({0.28, 0.12, 0.12});
   hand.pointer.press(*hand.frame(), Cursor::Button::left);
   EXPECT_TRUE(hand.did("grab"));
@@ -109,7 +109,7 @@ TEST(Cursor, EachToolDoesWhatItSays) {
   ASSERT_EQ(std::size(tools), tool_names().size());
   for (std::size_t t = 0; t < std::size(tools); ++t) {
     EXPECT_EQ(tool_names()[t], tools[t].first);
-    Hand hand;
+    AppFixture hand;
     hand.playground.act({"set", {"tool", text_of(static_cast<double>(t))}});
     hand.playground.act({"set", {"radius", "0.05"}});
     hand.move_to({0.28, 0.12, 0.12});
@@ -124,7 +124,7 @@ TEST(Cursor, EachToolDoesWhatItSays) {
 }
 
 TEST(Cursor, AJetStaysWhereThePointerIsWhileItFalls) {
-  Hand hand;
+  AppFixture hand;
   hand.move_to({0.2, 0.02, 0.18});
   hand.pointer.hold("pour", true);
   const auto jet = [&] {
@@ -145,7 +145,7 @@ TEST(Cursor, AJetStaysWhereThePointerIsWhileItFalls) {
 }
 
 TEST(Cursor, RightDragsShiftTheViewAndTurnItWithShift) {
-  Hand hand;
+  AppFixture hand;
   const gl::Camera before = hand.pointer.camera();
   hand.move_to({0.2, 0.02, 0.18});
   hand.pointer.press(*hand.frame(), Cursor::Button::right);

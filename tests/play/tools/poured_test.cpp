@@ -7,7 +7,7 @@
 
 #include "dreampm/play/model/matter.h"
 #include "dreampm/surface/volume_taken.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::poured_test {
 namespace {
@@ -15,7 +15,7 @@ using namespace test;
 using testing::HasSubstr;
 
 TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"erase 0.2 0.2 0.12 0.5", "set matter 0", "pour 0.2 0.3 0.12 0.06 0 -1.5 0", "frames 20", "pour off"});
   const std::shared_ptr<const Frame> frame = p.frame();
   // What a jet of that width and speed brings in a third of a second.
@@ -25,10 +25,10 @@ TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {
   play(p, {"pour 0.2 0.02 0.12 0.05 0 -1.5 0", "frames 4", "pour off", "frames 60"});
   EXPECT_TRUE(finite(*p.frame()));
   // A full tank takes no more.
-  Playground full(small_stage(), quiet_options());
+  Playground full(small_scene(), quiet_options());
   PlayOptions few = quiet_options();
   few.most_particles = full.simulation().particle_count() + 50;
-  Playground limited(small_stage(), few);
+  Playground limited(small_scene(), few);
   play(limited, {"pour 0.2 0.3 0.12 0.03 0 -1.5 0", "frames 60"});
   EXPECT_LE(limited.simulation().particle_count(), few.most_particles);
   EXPECT_THAT(limited.frame()->message, HasSubstr("are the most"));
@@ -37,7 +37,7 @@ TEST(Playground, PouringFillsAtTheDensityOfRestAndNothingIsBornInMatter) {
 // At half the pace the jet brings half as much: it is as dense, and not twice.
 TEST(Playground, AJetIsAsDenseWhereTheWorldIsSlowerThanAsked) {
   const auto poured = [](const Playground::Limit& limit) {
-    Playground p(small_stage(), quiet_options());
+    Playground p(small_scene(), quiet_options());
     const std::size_t before = p.simulation().particle_count();
     p.act(Action::parse("pour 0.2 0.35 0.12 0.07 0 -1.5 0"));
     while (p.simulation().time() < 0.15) p.tick(limit);
@@ -49,7 +49,7 @@ TEST(Playground, AJetIsAsDenseWhereTheWorldIsSlowerThanAsked) {
 
 // What falls faster is thinner, and as dense: nothing else brings a liquid together again.
 TEST(Playground, AJetThatGravityDrawsOutBecomesThinner) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"erase 0.2 0.2 0.12 0.5", "pour 0.2 0.36 0.12 0.06 0 -1.5 0", "frames 14"});
   const ParticleView water = p.simulation().particles("water");
   // In slices of the free jet: as a round bar of the second moments of what is there.
@@ -74,7 +74,7 @@ TEST(Playground, AJetThatGravityDrawsOutBecomesThinner) {
 // Poured paste that has sunk together is as dense as paste at rest, by what its particles believe
 // and by how they lie.
 TEST(Playground, PouredToothpasteTakesItsRestVolume) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"erase 0.2 0.2 0.12 0.5", "set matter 8", "pour 0.2 0.33 0.12 0.06 0 -1.5 0", "frames 30", "pour off",
            "frames 160"});
   const ParticleView paste = p.simulation().particles("toothpaste");
@@ -92,7 +92,7 @@ TEST(Playground, PouredToothpasteTakesItsRestVolume) {
 
 TEST(Playground, EveryKindOfMatterCanBePouredAndDropped) {
   for (std::size_t kind = 0; kind < matters().size(); ++kind) {
-    Playground p(small_stage(), quiet_options());
+    Playground p(small_scene(), quiet_options());
     const std::size_t before = p.simulation().particle_count();
     play(p, {"set matter " + std::to_string(kind), "drop box 0.2 0.3 0.12 0.1", "frames 10"});
     EXPECT_GT(p.simulation().particle_count(), before + 50) << matters()[kind].title;

@@ -9,7 +9,7 @@
 #include "dreampm/model/scene.h"
 #include "dreampm/play/tools/cursor.h"
 #include "dreampm/play/tools/wall_face.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::walls_test {
 namespace {
@@ -35,7 +35,7 @@ Spread spread(const Frame& frame) {
 }
 
 TEST(Walls, ADraggedWallPushesMatterAndLosesNone) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 12"});
   const std::size_t before = p.simulation().particle_count();
   const double mass = p.simulation().totals().mass;
@@ -65,7 +65,7 @@ TEST(Walls, ADraggedWallPushesMatterAndLosesNone) {
 // the wall stands still there.
 TEST(Walls, StopWhereMatterDoesNotGiveWay) {
   for (const char* kind : {"0", "7"}) {
-    Playground p(small_stage(), quiet_options());
+    Playground p(small_scene(), quiet_options());
     play(p, {"erase 0.2 0.2 0.12 0.5", std::string("set matter ") + kind, "drop box 0.2 0.13 0.12 0.22", "frames 5",
              "wall x_max 0.08"});
     const std::size_t before = p.simulation().particle_count();
@@ -102,7 +102,7 @@ TEST(Walls, RepeatThemselvesAndAreUndone) {
   const std::vector<std::string> lines{"frames 3", "wall x_max 0.25", "frames 6", "wall z_min 0.06", "frames 8"};
   std::uint64_t one = 0;
   for (const int threads : {1, 2}) {
-    Playground p(small_stage(), quiet_options(threads));
+    Playground p(small_scene(), quiet_options(threads));
     play(p, lines);
     if (threads == 1) one = p.hash();
     EXPECT_EQ(p.hash(), one);
@@ -123,7 +123,7 @@ TEST(Walls, RepeatThemselvesAndAreUndone) {
 TEST(Walls, ASavedSceneHasThemWhereTheyStand) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "play-walls";
   std::filesystem::remove_all(folder);
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 3", "wall x_max 0.34", "frames 20", "save " + (folder / "tank.yaml").string()});
   const double stands = p.frame()->room.max.x;
   Playground again(load_play_scene((folder / "tank.yaml").string()), quiet_options());
@@ -142,7 +142,7 @@ TEST(Walls, ASavedSceneHasThemWhereTheyStand) {
 TEST(Walls, ASavedSceneGoesOnToTheBit) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "play-walls-bits";
   std::filesystem::remove_all(folder);
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   play(p, {"frames 3", "wall x_max 0.34", "wall z_min 0.03", "frames 40", "save " + (folder / "tank.yaml").string()});
   Simulation after(load_scene(folder / "tank.yaml"), quiet_options().simulation);
   EXPECT_EQ(after.hash(), p.hash());
@@ -153,7 +153,7 @@ TEST(Walls, ASavedSceneGoesOnToTheBit) {
 }
 
 TEST(Walls, SayWhatIsWrong) {
-  Playground p(small_stage(), quiet_options());
+  Playground p(small_scene(), quiet_options());
   EXPECT_THAT(refusal(p, "wall left 0.2"), HasSubstr("x_min, x_max"));
   EXPECT_THAT(refusal(p, "wall x_max 0.01"), HasSubstr("must be between 0.08 and 0.4"));
   EXPECT_THAT(refusal(p, "wall x_max 0.5"), HasSubstr("must be between"));
@@ -182,7 +182,7 @@ TEST(Walls, ARayMeetsTheOneBehindOrBeforeTheFloor) {
 
 // The hand is as strong as it is: what presses on a wall slows it.
 TEST(Walls, TicksThatAreCutShortReplayToTheSameBits) {
-  Playground live(small_stage(), quiet_options()), again(small_stage(), quiet_options());
+  Playground live(small_scene(), quiet_options()), again(small_scene(), quiet_options());
   int calls = 0;
   for (Playground* p : {&live, &again}) play(*p, {"set gravity.y -10"});
   live.act(Action::parse("wall x_max 0.13")), again.act(Action::parse("wall x_max 0.13"));

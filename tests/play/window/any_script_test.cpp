@@ -3,13 +3,13 @@
 
 #include <random>
 
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::any_script_test {
 namespace {
 
 using test::quiet_options;
-using test::small_stage;
+using test::small_scene;
 
 /// Lines of every verb that writes no file and opens no other stage, with numbers and words of any
 /// kind in any number.
@@ -52,7 +52,7 @@ TEST(AnyScript, ALineIsDoneOrRefusedAsInput) {
   std::size_t done = 0, refused = 0;
   const auto first = 4 * static_cast<unsigned>(testing::UnitTest::GetInstance()->random_seed());
   for (unsigned seed = first; seed < first + 4; ++seed) {
-    Playground playground(small_stage(), quiet_options());
+    Playground playground(small_scene(), quiet_options());
     AnyLine lines(seed);
     for (int n = 0; n < 100; ++n) {
       const std::string line = lines.next(*playground.frame());
@@ -73,7 +73,7 @@ TEST(AnyScript, ALineIsDoneOrRefusedAsInput) {
 
 /// Cells and layers without end: a jet of these numbers ended the program, or took minutes a frame.
 TEST(AnyScript, WhatIsLargerThanTheBoxOrFarFromItIsRefused) {
-  Playground playground(small_stage(), quiet_options());
+  Playground playground(small_scene(), quiet_options());
   for (const char* line : {"pour 0.1 0.1 0.1 1e18 0 0 1", "pour 0.1 0.1 0.1 0.05 1e300 0 0", "pour 1e300 0 0 0.1 0 1 0",
                            "drop sphere 0.1 0.1 0.1 65536", "cut 0.1 0.1 0.1 0 1 0 1e39", "pin 0.1 0.1 0.1 2147483648",
                            "erase 0.1 1e18 0.1 0.1", "grab 0.1 0.1 0.1 1e18"})

@@ -15,8 +15,8 @@
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/stories.h"
 #include "dreampm/play/report/report_looks.h"
-#include "play/hand.h"
-#include "play/small_stage.h"
+#include "play/app_fixture.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::app_test {
 namespace {
@@ -28,7 +28,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
-TEST_F(Hand, EveryButtonPostsWhatItSays) {
+TEST_F(AppFixture, EveryButtonPostsWhatItSays) {
   std::vector<std::string> buttons{"restart", "undo"};
   for (std::size_t n = 0; n < matters().size(); ++n) buttons.push_back(fmt::format("set matter {}", n));
   for (std::size_t n = 0; n < tool_names().size(); ++n) buttons.push_back(fmt::format("set tool {}", n));
@@ -50,7 +50,7 @@ TEST_F(Hand, EveryButtonPostsWhatItSays) {
   EXPECT_THAT(posted, IsEmpty()) << "there is nothing to redo";
 }
 
-TEST_F(Hand, EveryStoryAndPresetHasAButtonThatOpensIt) {
+TEST_F(AppFixture, EveryStoryAndPresetHasAButtonThatOpensIt) {
   window_width = 2000, window_height = 400;
   start();
   std::vector<std::string> buttons{"open report 1", "open report 2"};
@@ -64,7 +64,7 @@ TEST_F(Hand, EveryStoryAndPresetHasAButtonThatOpensIt) {
   }
 }
 
-TEST_F(Hand, EachLookOfTheReportIsOneClick) {
+TEST_F(AppFixture, EachLookOfTheReportIsOneClick) {
   playground.emplace(load_play_scene("report", 1), quiet_options());
   start();
   for (const ReportLook& look : report_looks()) {
@@ -76,7 +76,7 @@ TEST_F(Hand, EachLookOfTheReportIsOneClick) {
   }
 }
 
-TEST_F(Hand, EveryControlStandsOnceAndSetsItselfOnly) {
+TEST_F(AppFixture, EveryControlStandsOnceAndSetsItselfOnly) {
   for (const char* material : {"water", "jelly"})
     for (const Place& p : app->places())
       if (p.what == std::string("all ") + material) {
@@ -140,7 +140,7 @@ TEST_F(Hand, EveryControlStandsOnceAndSetsItselfOnly) {
   }
 }
 
-TEST_F(Hand, AColorOfOneMaterialLeavesTheOthersAlone) {
+TEST_F(AppFixture, AColorOfOneMaterialLeavesTheOthersAlone) {
   playground->act(Action::parse("set matter 5"));
   playground->act(Action::parse("drop box 0.1 0.3 0.12 0.06"));
   start();
@@ -161,7 +161,7 @@ TEST_F(Hand, AColorOfOneMaterialLeavesTheOthersAlone) {
   }
 }
 
-TEST_F(Hand, ADoubleClickResetsASliderAndSetsNothingBefore) {
+TEST_F(AppFixture, ADoubleClickResetsASliderAndSetsNothingBefore) {
   point_at("gravity.y", 0.1);
   click();
   click();
@@ -170,7 +170,7 @@ TEST_F(Hand, ADoubleClickResetsASliderAndSetsNothingBefore) {
   EXPECT_THAT(posted, ElementsAre("set gravity.y -9.81"));
 }
 
-TEST_F(Hand, AClickOnASliderSetsItOnceItIsNoDoubleOne) {
+TEST_F(AppFixture, AClickOnASliderSetsItOnceItIsNoDoubleOne) {
   point_at("gravity.y", 0.1);
   click();
   EXPECT_THAT(posted, IsEmpty());
@@ -179,7 +179,7 @@ TEST_F(Hand, AClickOnASliderSetsItOnceItIsNoDoubleOne) {
   EXPECT_LT(Action::parse(posted[0]).number(1), -5);
 }
 
-TEST_F(Hand, EscapeClosesListsAndMenusAndTheNextClickIsOfThePicture) {
+TEST_F(AppFixture, EscapeClosesListsAndMenusAndTheNextClickIsOfThePicture) {
   const auto clicks_into_the_picture = [&] {
     posted.clear();
     move(450, 900);
@@ -195,7 +195,7 @@ TEST_F(Hand, EscapeClosesListsAndMenusAndTheNextClickIsOfThePicture) {
   EXPECT_EQ(clicks_into_the_picture(), plain) << "after a menu";
 }
 
-TEST_F(Hand, EachDragIsAnEditOfItsOwn) {
+TEST_F(AppFixture, EachDragIsAnEditOfItsOwn) {
   for (int drag = 1; drag <= 2; ++drag) {
     point_at("gravity.y", 0.2);
     input.left = true;
@@ -211,7 +211,7 @@ TEST_F(Hand, EachDragIsAnEditOfItsOwn) {
   EXPECT_EQ(ended, 2) << "what changes nothing in the world is no edit";
 }
 
-TEST_F(Hand, AControlClickTakesATypedNumber) {
+TEST_F(AppFixture, AControlClickTakesATypedNumber) {
   point_at("gravity.y", 0.1);
   input.control = true;
   click();
@@ -251,7 +251,7 @@ TEST_F(Hand, AControlClickTakesATypedNumber) {
   EXPECT_EQ(posted.back(), "set gravity.y 10");
 }
 
-TEST_F(Hand, ARightClickTellsAndPostsNothing) {
+TEST_F(AppFixture, ARightClickTellsAndPostsNothing) {
   const std::shared_ptr<const Frame> frame = playground->frame();
   for (const std::string what : {"gravity.y", "dark", "look", "material.water.viscosity"}) {
     point_at(what, 0.2);
@@ -269,7 +269,7 @@ TEST_F(Hand, ARightClickTellsAndPostsNothing) {
   }
 }
 
-TEST_F(Hand, AHeadingFoldsItsControlsAway) {
+TEST_F(AppFixture, AHeadingFoldsItsControlsAway) {
   point_at("heading World"), click();
   const auto shown = [&](const std::string& what) {
     return std::any_of(app->places().begin(), app->places().end(), [&](const Place& p) { return p.what == what; });
@@ -279,7 +279,7 @@ TEST_F(Hand, AHeadingFoldsItsControlsAway) {
   EXPECT_THAT(posted, IsEmpty());
 }
 
-TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
+TEST_F(AppFixture, TheTiltSetsGravityAndNothingElse) {
   point_at("tilt", 0.8);
   input.left = true;
   draw(2);
@@ -289,7 +289,7 @@ TEST_F(Hand, TheTiltSetsGravityAndNothingElse) {
   EXPECT_THAT(taken(), ElementsAre("gravity.x", "gravity.y", "gravity.z"));
 }
 
-TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
+TEST_F(AppFixture, KeysDoWhatTheHelpPageSays) {
   const std::vector<std::pair<int, std::string>> all{
       {'1', "set matter 0"}, {'2', "set matter 1"},     {'3', "set matter 2"},     {'4', "set matter 3"},
       {'5', "set matter 4"}, {'6', "set matter 5"},     {'7', "set matter 6"},     {'8', "set matter 7"},
@@ -333,7 +333,7 @@ TEST_F(Hand, KeysDoWhatTheHelpPageSays) {
   EXPECT_THAT(posted, IsEmpty());
 }
 
-TEST_F(Hand, AComparisonHasItsButtonsAndAPictureOfEachSide) {
+TEST_F(AppFixture, AComparisonHasItsButtonsAndAPictureOfEachSide) {
   playground->act(Action::parse("set compare_with 2"));
   draw();
   key('X');
@@ -380,7 +380,7 @@ TEST_F(Hand, AComparisonHasItsButtonsAndAPictureOfEachSide) {
   EXPECT_EQ(pressed_at(310 + half + found), left);
 }
 
-TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
+TEST_F(AppFixture, PourEndsWhenTheKeyIsUpWhateverHappened) {
   move(450, 1250);
   input.pressed = {'P'};
   draw(2);
@@ -394,7 +394,7 @@ TEST_F(Hand, PourEndsWhenTheKeyIsUpWhateverHappened) {
   EXPECT_THAT(posted, Contains("pour off"));
 }
 
-TEST_F(Hand, WindowsOfAnySizeAreDrawn) {
+TEST_F(AppFixture, WindowsOfAnySizeAreDrawn) {
   for (const auto& [w, h] :
        std::vector<std::pair<int, int>>{{1, 1}, {2, 900}, {900, 2}, {310, 98}, {496, 316}, {497, 319}, {3000, 40}}) {
     window_width = w, window_height = h;

@@ -10,8 +10,8 @@
 #include <set>
 
 #include "dreampm/play/window/app.h"
-#include "play/hand.h"
-#include "play/small_stage.h"
+#include "play/app_fixture.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::app_use_test {
 namespace {
@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-TEST_F(Hand, ControlsAreReachedByKeyboard) {
+TEST_F(AppFixture, ControlsAreReachedByKeyboard) {
   const auto press = [&](Key k) { key(static_cast<int>(k)), draw(2); };
   press(Key::f6);
   std::set<std::string> reached;
@@ -43,7 +43,7 @@ TEST_F(Hand, ControlsAreReachedByKeyboard) {
   EXPECT_THAT(posted, ElementsAre("shake -12 0 0"));
 }
 
-TEST_F(Hand, AFileFallsInWhereItIsDropped) {
+TEST_F(AppFixture, AFileFallsInWhereItIsDropped) {
   input.files = {"/models/a cup.obj", "/models/b.ply"};
   move(450, 1250);
   ASSERT_EQ(posted.size(), 2U);
@@ -59,7 +59,7 @@ TEST_F(Hand, AFileFallsInWhereItIsDropped) {
   std::filesystem::remove(scene);
 }
 
-TEST_F(Hand, OpenListsWhatIsThereAndTakesAPath) {
+TEST_F(AppFixture, OpenListsWhatIsThereAndTakesAPath) {
   window_width = 1280, window_height = 720;
   start();
   point_at("open"), click(), draw(2);
@@ -78,7 +78,7 @@ TEST_F(Hand, OpenListsWhatIsThereAndTakesAPath) {
   std::filesystem::remove(scene);
 }
 
-TEST_F(Hand, TheMeterUnfoldsOnAClick) {
+TEST_F(AppFixture, TheMeterUnfoldsOnAClick) {
   window_width = 1280, window_height = 720;
   start();
   const Place line = place("meter");
@@ -92,7 +92,7 @@ TEST_F(Hand, TheMeterUnfoldsOnAClick) {
   EXPECT_LT(differing(folded, picture()), 20000);
 }
 
-TEST_F(Hand, AClickOverNothingSaysSo) {
+TEST_F(AppFixture, AClickOverNothingSaysSo) {
   window_width = 1280, window_height = 720;
   playground->act(Action::parse("set tool 5"));
   start();
@@ -102,7 +102,7 @@ TEST_F(Hand, AClickOverNothingSaysSo) {
   EXPECT_GT(differing(before, picture()), 3000) << "a message";
 }
 
-TEST_F(Hand, WhatIsAdvancedIsShownWhereAllIsAskedFor) {
+TEST_F(AppFixture, WhatIsAdvancedIsShownWhereAllIsAskedFor) {
   const auto shown = [&](const std::string& what) {
     return std::any_of(app->places().begin(), app->places().end(), [&](const Place& p) { return p.what == what; });
   };
@@ -114,7 +114,7 @@ TEST_F(Hand, WhatIsAdvancedIsShownWhereAllIsAskedFor) {
   EXPECT_FALSE(shown("material.water.gamma"));
 }
 
-TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
+TEST_F(AppFixture, TheRewindBarHasRoomInSmallWindows) {
   for (const auto& [w, h] : {std::pair{1280, 720}, {900, 600}, {640, 480}}) {
     window_width = w, window_height = h;
     start();
@@ -126,7 +126,7 @@ TEST_F(Hand, TheRewindBarHasRoomInSmallWindows) {
   }
 }
 
-TEST_F(Hand, EscapeClosesTheMenuOfFilesWhileItTakesText) {
+TEST_F(AppFixture, EscapeClosesTheMenuOfFilesWhileItTakesText) {
   const auto is_open = [&] {
     return std::any_of(app->places().begin(), app->places().end(),
                        [](const Place& p) { return p.what == "open path"; });
@@ -143,7 +143,7 @@ TEST_F(Hand, EscapeClosesTheMenuOfFilesWhileItTakesText) {
 }
 
 // The frame is the same all the time: what keys ask for counts before a slow solver shows it.
-TEST_F(Hand, KeysCountBeforeTheNextFrame) {
+TEST_F(AppFixture, KeysCountBeforeTheNextFrame) {
   app.emplace(
       [this](const Action& a) {
         posted.push_back(a.text());
@@ -165,7 +165,7 @@ TEST_F(Hand, KeysCountBeforeTheNextFrame) {
   EXPECT_THAT(posted, testing::Contains(testing::StartsWith("cut ")));
 }
 
-TEST_F(Hand, AHintFadesOnceItIsFollowed) {
+TEST_F(AppFixture, AHintFadesOnceItIsFollowed) {
   window_width = 1280, window_height = 700;
   start();
   const auto seen = [&] {
@@ -188,7 +188,7 @@ TEST_F(Hand, AHintFadesOnceItIsFollowed) {
   EXPECT_GT(seen(), 0.4 * all) << "the others stay";
 }
 
-TEST_F(Hand, AHeldKeyRepeatsOnlyWhatOneDoesInARow) {
+TEST_F(AppFixture, AHeldKeyRepeatsOnlyWhatOneDoesInARow) {
   const auto held = [&](int key) {
     posted.clear();
     input.repeated = {key, key};
@@ -213,7 +213,7 @@ int scale_length(const RgbImage& picture, int left, int bottom) {
   return x - left - 16;
 }
 
-TEST_F(Hand, TheScaleIsThatOfThePictureWhichIsDrawn) {
+TEST_F(AppFixture, TheScaleIsThatOfThePictureWhichIsDrawn) {
   window_width = 900, window_height = 1000;
   playground->act(Action::parse("compare on"));
   start();

@@ -14,7 +14,7 @@
 #include "dreampm/image.h"
 #include "dreampm/io/png.h"
 #include "dreampm/play/window/headless.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::golden_test {
 namespace {

@@ -1,7 +1,7 @@
 // What pictures and films of the view show beside the matter.
 #include <gtest/gtest.h>
 
-#include "play/hand.h"
+#include "play/app_fixture.h"
 
 namespace dreampm::play::saved_pictures_test {
 namespace {
@@ -13,10 +13,10 @@ RgbImage part_of(const RgbImage& image, int x, int y, int width, int height) {
   return part;
 }
 
-class SavedPictures : public Hand {
+class SavedPictures : public AppFixture {
  protected:
   void SetUp() override {
-    Hand::SetUp();
+    AppFixture::SetUp();
     window_width = 1000, window_height = 700;
   }
   /// The whole window, and the picture that is saved of it.

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "dreampm/gl/headless.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::view_test {
 namespace {
@@ -86,7 +86,7 @@ TEST(View, AutomaticBeginsWithMatter) {
   const gl::HeadlessContext context;
   const gl::Framebuffer framebuffer(32, 32);
   View view;
-  Playground playground(small_stage(), quiet_options());
+  Playground playground(small_scene(), quiet_options());
   for (const auto& [look, name] : {std::pair{0.0, "matter"}, {1.0, "points"}, {0.0, "matter"}}) {
     Frame frame = *playground.frame();
     frame.settings.look = look;
@@ -100,7 +100,7 @@ TEST(View, AMeshLivesUntilAnotherIsDrawnInItsPlace) {
   const gl::HeadlessContext context;
   const gl::Framebuffer framebuffer(32, 32);
   View view;
-  Playground playground(small_stage(), quiet_options());
+  Playground playground(small_scene(), quiet_options());
   Frame frame = *playground.frame();
   const auto shown = [&] {
     TriMesh mesh;

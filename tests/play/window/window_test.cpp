@@ -22,7 +22,7 @@
 #include "dreampm/play/window/app.h"
 #include "dreampm/play/window/view.h"
 #include "play/ask_to_close.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::window_test {
 namespace {
@@ -211,7 +211,7 @@ TEST_F(Window, KeysAndClicksArriveAndTheRecordReplays) {
   const PlayScene stage = load_play_scene(scene);
   Playground twin(stage, quiet_options());
   Input input;
-  for (int n = 0; n < 3; ++n) input.time += 0.02, app.take(*twin.frame(), input, width, height, 1);
+  for (int n = 0; n < 3; ++n) input.time += 0.02, app.update(*twin.frame(), input, width, height, 1);
   const auto at = [&](const std::string& what, double share) {
     for (const Place& p : app.places())
       if (p.what == what)

@@ -10,9 +10,11 @@
 namespace dreampm {
 
 inline constexpr Param elastic_params[] = {
-    {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
-    {"youngs_modulus", "Pa", 2.0e4, 1, 1e11, true, "stiffness E"},
-    {"poissons_ratio", "1", 0.3, 0, 0.495, false, "nu: how much it narrows when pulled"},
+    Param{"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"youngs_modulus", "Pa", 2.0e4, 1, 1e11, true, "stiffness E"}.shown(
+        {.label = "Young's modulus", .basic = true}),
+    Param{"poissons_ratio", "1", 0.3, 0, 0.495, false, "nu: how much it narrows when pulled"}.shown(
+        {.label = "Poisson's ratio", .basic = true}),
 };
 inline constexpr Preset::Value jelly_values[] = {
     {"density", 1020}, {"youngs_modulus", 1.0e4}, {"poissons_ratio", 0.45}};

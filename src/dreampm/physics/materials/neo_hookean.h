@@ -11,9 +11,11 @@
 namespace dreampm {
 
 inline constexpr Param neo_hookean_params[] = {
-    {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
-    {"youngs_modulus", "Pa", 1.0e5, 1, 1e11, true, "stiffness E"},
-    {"poissons_ratio", "1", 0.45, 0, 0.495, false, "nu: how much it narrows when pulled"},
+    Param{"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"youngs_modulus", "Pa", 1.0e5, 1, 1e11, true, "stiffness E"}.shown(
+        {.label = "Young's modulus", .basic = true}),
+    Param{"poissons_ratio", "1", 0.45, 0, 0.495, false, "nu: how much it narrows when pulled"}.shown(
+        {.label = "Poisson's ratio", .basic = true}),
 };
 inline constexpr Preset::Value silicone_values[] = {
     {"density", 1030}, {"youngs_modulus", 1.32e6}, {"poissons_ratio", 0.49}};

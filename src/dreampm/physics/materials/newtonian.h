@@ -14,12 +14,14 @@ namespace dreampm {
 
 inline constexpr Word gamma_words[] = {{"linear", -1}};  // p = K/gamma (J^-gamma - 1) with gamma = -1 is K (1 - J)
 inline constexpr Param newtonian_params[] = {
-    {"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"},
-    {"viscosity", "Pa s", 1.0e-3, 0, 1000, true, "dynamic viscosity"},
+    Param{"density", "kg/m^3", 1000, 1, 25000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"viscosity", "Pa s", 1.0e-3, 0, 1000, true, "dynamic viscosity"}.shown(
+        {.min = 1e-4, .max = 1000, .basic = true}),
     bulk_modulus_param,
     max_compression_param,
-    {"gamma", "1", 7, 1, 15, false, "exponent of the equation of state; linear for p = K (1 - J)", gamma_words},
-    {"tension", "", 0, 0, 1, false, "whether the liquid can pull", flag_words, true},
+    Param{"gamma", "1", 7, 1, 15, false, "exponent of the equation of state; linear for p = K (1 - J)", gamma_words}
+        .shown({.label = "gamma of the pressure"}),
+    Param{"tension", "", 0, 0, 1, false, "whether the liquid can pull", flag_words, true}.shown({.label = "can pull"}),
     relaxation_param,
 };
 inline constexpr Preset::Value water_values[] = {{"density", 998.2}, {"viscosity", 1.0016e-3}};

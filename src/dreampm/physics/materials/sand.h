@@ -21,15 +21,20 @@ namespace dreampm {
 
 inline constexpr Word sand_match_words[] = {{"triaxial", 0}, {"plane_strain", 1}};
 inline constexpr Param sand_params[] = {
-    {"density", "kg/m^3", 1600, 1, 5000, true, "mass per volume at rest, gaps included"},
-    {"youngs_modulus", "Pa", 1.0e6, 1e3, 1e9, true, "stiffness E of the heap; softer takes fewer steps"},
-    {"poissons_ratio", "1", 0.3, -0.5, 0.45, false, "nu: how much it narrows when pulled"},
-    {"friction_angle", "deg", 34, 1, 60, false, "angle of internal friction phi"},
-    {"cohesion", "Pa", 0, 0, 1e5, true, "shear strength without pressure: wet sand, soil"},
-    {"match", "", 0, 0, 1, false, "where the cone meets Mohr-Coulomb", sand_match_words, true},
+    Param{"density", "kg/m^3", 1600, 1, 5000, true, "mass per volume at rest, gaps included"}.shown({.basic = true}),
+    Param{"youngs_modulus", "Pa", 1.0e6, 1e3, 1e9, true, "stiffness E of the heap; softer takes fewer steps"}.shown(
+        {.label = "Young's modulus", .basic = true}),
+    Param{"poissons_ratio", "1", 0.3, -0.5, 0.45, false, "nu: how much it narrows when pulled"}.shown(
+        {.label = "Poisson's ratio", .basic = true}),
+    Param{"friction_angle", "deg", 34, 1, 60, false, "angle of internal friction phi"}.shown({.basic = true}),
+    Param{"cohesion", "Pa", 0, 0, 1e5, true, "shear strength without pressure: wet sand, soil"}.shown(
+        {.min = 0, .max = 20000, .basic = true}),
+    Param{"match", "", 0, 0, 1, false, "where the cone meets Mohr-Coulomb", sand_match_words, true}.shown(
+        {.label = "match of the friction angle"}),
     {"grain_size", "m", 0, 0, 0.1, false, "diameter d of a grain: above 0 friction rises with the rate of shearing"},
     {"friction_rise", "1", 0.26, 0, 1, false, "what sin phi gains in the fastest flow, where d is given"},
-    {"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"},
+    Param{"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"}.shown(
+        {.label = "inertial number of the rise"}),
     {"relaxation", "1", 1, 0, 10, false, "strength of anchoring the volume to the measured density; 0 turns it off"},
 };
 inline constexpr Preset::Value dry_sand_values[] = {

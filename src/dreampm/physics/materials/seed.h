@@ -17,20 +17,29 @@
 namespace dreampm {
 
 inline constexpr Param seed_params[] = {
-    {"density", "kg/m^3", 1, 1e-3, 25000, true, "mass per volume at rest"},
-    {"youngs_modulus", "Pa", 1000, 1, 1e9, true, "E of the report: mu = E V, lambda = E (1 - V)"},
-    {"v", "1", 0.5, 0, 0.7, false, "the report's V: 0 is a fluid, 0.7 the stiffest; ignored if elastic"},
-    {"elastic", "", 0, 0, 1, false, "purely elastic: no plasticity, Lame parameters of E and nu times h", flag_words,
-     true},
-    {"h", "1", 0.3, 0.01, 10, false, "hardness of the elastic object"},
-    {"poissons_ratio", "1", 0.2, 0, 0.495, false, "nu of the elastic object"},
-    {"lower", "1", -250, -10000, 0, false,
-     "plasticity lower bound: singular values over cbrt(J) stay above 1 + lower 1e-4"},
-    {"upper", "1", 45, 0, 10000, false,
-     "plasticity upper bound: singular values over cbrt(J) stay below 1 + upper 1e-4"},
-    {"hardening", "1", 10, 0, 20, false,
-     "xi of the factor exp(xi (1 - Jp)): what was pressed below the lower bound is stiffer"},
-    {"legacy", "", 0, 0, 1, false, "the report's program to the letter, for comparison", flag_words, true},
+    Param{"density", "kg/m^3", 1, 1e-3, 25000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"youngs_modulus", "Pa", 1000, 1, 1e9, true, "E of the report: mu = E V, lambda = E (1 - V)"}.shown(
+        {.label = "Young's modulus", .basic = true}),
+    Param{"v", "1", 0.5, 0, 0.7, false, "the report's V: 0 is a fluid, 0.7 the stiffest; ignored if elastic"}.shown(
+        {.min = 0, .max = 0.7, .label = "V", .basic = true, .needs_off = "elastic"}),
+    Param{"elastic", "", 0, 0, 1, false, "purely elastic: no plasticity, Lame parameters of E and nu times h",
+          flag_words, true}
+        .shown({.label = "Elastic Object", .basic = true}),
+    Param{"h", "1", 0.3, 0.01, 10, false, "hardness of the elastic object"}.shown(
+        {.min = 0.25, .max = 4, .label = "Hard", .basic = true, .needs_on = "elastic"}),
+    Param{"poissons_ratio", "1", 0.2, 0, 0.495, false, "nu of the elastic object"}.shown(
+        {.label = "Poisson's ratio", .basic = true}),
+    Param{"lower", "1", -250, -10000, 0, false,
+          "plasticity lower bound: singular values over cbrt(J) stay above 1 + lower 1e-4"}
+        .shown({.min = -400, .max = -100, .label = "plasticity lower bound", .basic = true, .needs_off = "elastic"}),
+    Param{"upper", "1", 45, 0, 10000, false,
+          "plasticity upper bound: singular values over cbrt(J) stay below 1 + upper 1e-4"}
+        .shown({.min = 0, .max = 100, .label = "plasticity upper bound", .basic = true, .needs_off = "elastic"}),
+    Param{"hardening", "1", 10, 0, 20, false,
+          "xi of the factor exp(xi (1 - Jp)): what was pressed below the lower bound is stiffer"}
+        .shown({.basic = true}),
+    Param{"legacy", "", 0, 0, 1, false, "the report's program to the letter, for comparison", flag_words, true}.shown(
+        {.basic = true}),
 };
 
 struct Seed {

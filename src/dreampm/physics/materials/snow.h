@@ -12,12 +12,15 @@
 namespace dreampm {
 
 inline constexpr Param snow_params[] = {
-    {"density", "kg/m^3", 400, 1, 2000, true, "mass per volume at rest"},
-    {"youngs_modulus", "Pa", 1.4e5, 1, 1e9, true, "stiffness E of unpacked snow"},
-    {"poissons_ratio", "1", 0.2, 0, 0.45, false, "nu: how much it narrows when pulled"},
-    {"critical_compression", "1", 2.5e-2, 1e-4, 0.2, true, "strain at which it packs"},
-    {"critical_stretch", "1", 7.5e-3, 1e-4, 0.2, true, "strain at which it breaks"},
-    {"hardening", "1", 10, 0, 20, false, "xi of the factor exp(xi (1 - Jp)) on the stiffness"},
+    Param{"density", "kg/m^3", 400, 1, 2000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"youngs_modulus", "Pa", 1.4e5, 1, 1e9, true, "stiffness E of unpacked snow"}.shown(
+        {.label = "Young's modulus", .basic = true}),
+    Param{"poissons_ratio", "1", 0.2, 0, 0.45, false, "nu: how much it narrows when pulled"}.shown(
+        {.label = "Poisson's ratio", .basic = true}),
+    Param{"critical_compression", "1", 2.5e-2, 1e-4, 0.2, true, "strain at which it packs"}.shown({.basic = true}),
+    Param{"critical_stretch", "1", 7.5e-3, 1e-4, 0.2, true, "strain at which it breaks"}.shown({.basic = true}),
+    Param{"hardening", "1", 10, 0, 20, false, "xi of the factor exp(xi (1 - Jp)) on the stiffness"}.shown(
+        {.basic = true}),
 };
 inline constexpr Preset::Value packed_snow_values[] = {{"density", 400},        {"youngs_modulus", 1.4e5},
                                                        {"poissons_ratio", 0.2}, {"critical_compression", 2.5e-2},

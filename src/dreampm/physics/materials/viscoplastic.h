@@ -16,9 +16,11 @@
 namespace dreampm {
 
 inline constexpr Param viscoplastic_params[] = {
-    {"density", "kg/m^3", 1500, 1, 25000, true, "mass per volume at rest"},
-    {"yield_stress", "Pa", 100, 0, 1e6, true, "shear stress below which it does not flow"},
-    {"consistency", "Pa s^n", 10, 0, 1e5, true, "k of the shear stress yield_stress + k rate^n"},
+    Param{"density", "kg/m^3", 1500, 1, 25000, true, "mass per volume at rest"}.shown({.basic = true}),
+    Param{"yield_stress", "Pa", 100, 0, 1e6, true, "shear stress below which it does not flow"}.shown(
+        {.min = 0.1, .max = 5000, .basic = true}),
+    Param{"consistency", "Pa s^n", 10, 0, 1e5, true, "k of the shear stress yield_stress + k rate^n"}.shown(
+        {.min = 0.1, .max = 1000, .basic = true}),
     {"flow_index", "1", 1, 0.1, 2, false, "n: below 1 it thins when sheared, above 1 it thickens"},
     {"shear_modulus", "Pa", 1.0e4, 1, 1e8, true, "stiffness G before it yields; well above the shear stresses"},
     bulk_modulus_param,

@@ -14,8 +14,14 @@ inline constexpr Param bulk_modulus_param{"bulk_modulus",
                                           {},
                                           false,
                                           "max_compression"};
-inline constexpr Param max_compression_param{
-    "max_compression", "1", 0.01, 1e-4, 0.2, true, "largest wanted relative change of volume; gives the bulk modulus"};
+inline constexpr Param max_compression_param = Param{"max_compression",
+                                                     "1",
+                                                     0.01,
+                                                     1e-4,
+                                                     0.2,
+                                                     true,
+                                                     "largest wanted relative change of volume; gives the bulk modulus"}
+                                                   .shown({.basic = true});
 inline constexpr Param relaxation_param{
     "relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"};
 

@@ -1,8 +1,11 @@
 // Since when each particle is there.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
+
+#include "dreampm/simulation.h"
 
 namespace dreampm::play {
 
@@ -20,6 +23,17 @@ class Ages {
  private:
   static constexpr double unseen = -1;
   std::vector<double> born_;  ///< s, by id
+};
+
+/// When matter came in.
+struct Arrivals {
+  Ages ages;
+  std::optional<std::uint32_t> seen_until{};  ///< the id of the next particle, when ages saw all; absent: they did not
+
+  /// Notes what came in since the last call.
+  void see(const Simulation& simulation);
+  /// After a jump to another moment.
+  void jump(const Simulation& simulation) { ages.back_to(simulation.time()), seen_until.reset(); }
 };
 
 }  // namespace dreampm::play

@@ -1,7 +1,12 @@
 #include "dreampm/play/model/control.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "dreampm/error.h"
 #include "dreampm/physics/projection/time_step.h"
 #include "dreampm/play/model/matter.h"
 
@@ -68,6 +73,22 @@ const std::vector<std::string>& color_choices() {
   return names;
 }
 
+const ControlInfo& find_control(const std::vector<ControlInfo>& controls, const std::string& id) {
+  const auto control = std::find_if(controls.begin(), controls.end(), [&](const auto& c) { return c.id == id; });
+  if (control != controls.end()) return *control;
+  std::string names;
+  for (const ControlInfo& c : controls) names += " " + c.id;
+  throw InputError(fmt::format("set: there is no control '{}'; there are{}", id, names));
+}
+
+void check_value(const ControlInfo& control, double value) {
+  if (!(value >= control.min && value <= control.max))
+    throw InputError(fmt::format("set: {} is {}: must be between {} and {} {}", control.id, value, control.min,
+                                 control.max, control.unit));
+  if (!control.choices.empty() && value != std::floor(value))
+    throw InputError(fmt::format("set: {} is {}: must be a whole number", control.id, value));
+}
+
 double SettingControl::value(const Settings& settings) const {
   return std::visit([&](auto which) { return static_cast<double>(settings.*which); }, member);
 }
@@ -104,16 +125,16 @@ const std::vector<SettingControl>& setting_controls() {
       Row(&S::matter, "Matter", "matter", "Matter")
           .choices(matter_titles())
           .help("what is poured and dropped; keys 1 to 0"),
-      Row(&S::tool, "Hand", "tool", "Tool").choices(tool_names()).help("what a drag with the left button does"),
-      Row(&S::radius, "Hand", "radius", "Brush radius")
+      Row(&S::tool, "Brush", "tool", "Tool").choices(tool_names()).help("what a drag with the left button does"),
+      Row(&S::radius, "Brush", "radius", "Brush radius")
           .range(0.02, 0.3, "m")
           .decades()
           .help("of the ring under the cursor"),
-      Row(&S::strength, "Hand", "strength", "Brush strength")
+      Row(&S::strength, "Brush", "strength", "Brush strength")
           .range(0.1, 10, "")
           .decades()
           .help("how firmly the brush takes matter along"),
-      Row(&S::drop, "Hand", "drop", "Drop a")
+      Row(&S::drop, "Brush", "drop", "Drop a")
           .choices(drop_names())
           .help("what the tool drop lets fall: crate, brick and ball are rigid, the others of the chosen matter"),
       Row(&S::compare_with, "Compare", "compare_with", "Side B")

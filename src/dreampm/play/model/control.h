@@ -29,8 +29,10 @@ struct ControlInfo {
   bool operator==(const ControlInfo&) const = default;
 };
 
-/// What is said here of the sliders of parameters that no material has: a name was mistyped.
-std::vector<std::string> mistyped_parameters();
+/// The control of that id. Throws InputError that names all where there is none.
+const ControlInfo& find_control(const std::vector<ControlInfo>& controls, const std::string& id);
+/// Throws InputError for a value that the control cannot have.
+void check_value(const ControlInfo& control, double value);
 
 /// Between which values of a control the matter can be played live.
 struct LiveRange {

@@ -59,7 +59,7 @@ struct ToolButton {
   Action action;
 };
 
-/// What happens between asking and taking.
+/// How fast the world goes: what was asked for, and what was done.
 struct Meters {
   double asked_dt = 0;  ///< s
   double taken_dt = 0;  ///< s, of the last step
@@ -98,7 +98,7 @@ struct Frame {
   double time = 0;  ///< s
   std::uint64_t steps = 0;
   std::size_t particles = 0;
-  std::size_t size = 1;                      ///< of the stage, an index into size_names()
+  std::size_t size = 1;                      ///< of the scene, an index into size_names()
   bool can_resize = true;                    ///< whether it may have another one
   std::size_t solver = 0;                    ///< index into solver_names()
   std::string no_other;                      ///< why the other solver cannot do with the stage; empty: it can
@@ -132,7 +132,7 @@ struct Frame {
   std::string message;  ///< the last thing that was refused, mended or saved; empty: none
   bool message_is_error = false;
   std::uint64_t message_number = 0;  ///< counts messages
-  std::string lost;                  ///< what left by open walls since the stage was opened; empty: nothing
+  std::string lost;                  ///< what left by open walls since the scene was opened; empty: nothing
   std::uint64_t actions = 0;         ///< done so far: those with lower numbers are in this frame
   /// While materials are compared: which side this is, the chosen one, 'A' or 'B', what it is
   /// called after, and the other one.

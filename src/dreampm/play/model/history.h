@@ -31,7 +31,8 @@ class History {
 
   explicit History(std::uint64_t bytes) : bytes_(bytes) {}
 
-  /// Whether the latest moment lies so far back that another is due, or others lie ahead of it.
+  /// Whether the latest moment is more than `interval` ago, or moments lie ahead that were gone
+  /// back over.
   bool is_due(double played) const {
     return at_ == 0 || at_ < moments_.size() || played >= moments_[at_ - 1].played + interval;
   }

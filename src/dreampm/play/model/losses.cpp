@@ -1,64 +1,67 @@
-// Matter that leaves by open walls: said, so that nothing vanishes without a word.
+#include "dreampm/play/model/losses.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <string>
 
 #include "dreampm/model/scene.h"
 #include "dreampm/play/model/action.h"
-#include "dreampm/play/model/play_model.h"
 
 namespace dreampm::play {
 namespace {
 
-/// s of playing between two messages about the same stream.
-constexpr double loss_pause = 0.5;
+/// s of playing between two messages about losses that others came between.
+constexpr double pause_of_messages = 0.5;
 /// s of playing without a loss after which counting begins anew.
-constexpr double lossless = 5;
+constexpr double pause_of_stream = 5;
 
-constexpr std::array<const char*, 6> side_names{"the wall x_min", "the wall x_max", "the bottom",
-                                                "the top",        "the wall z_min", "the wall z_max"};
+constexpr std::array<const char*, 6> names_of_sides{"the wall x_min", "the wall x_max", "the bottom",
+                                                    "the top",        "the wall z_min", "the wall z_max"};
+
+CountBySide count_outside(const Simulation& simulation) {
+  CountBySide out{};
+  const model::Space& space = simulation.scene().model().space;
+  for (const std::string& material : simulation.scene().materials())
+    simulation.visit(material, {}, [&](const ParticleBatch& some) {
+      for (const Vec3d& x : some.position)
+        for (int a = 0; a < 3; ++a) {
+          if (x[a] < space.min[a]) ++out[static_cast<std::size_t>(2 * a)];
+          if (x[a] > space.end()[a]) ++out[static_cast<std::size_t>(2 * a + 1)];
+        }
+    });
+  return out;
+}
 
 }  // namespace
 
-std::string lost_text(const std::array<std::uint64_t, 6>& by_side) {
+std::string lost_text(const CountBySide& by_side) {
   std::uint64_t sum = 0;
   std::string by;
   for (std::size_t side = 0; side < by_side.size(); ++side)
-    if (by_side[side] > 0) sum += by_side[side], by += fmt::format("{}{}", by.empty() ? "" : " and ", side_names[side]);
+    if (by_side[side] > 0)
+      sum += by_side[side], by += fmt::format("{}{}", by.empty() ? "" : " and ", names_of_sides[side]);
   return sum == 0 ? "" : fmt::format("{} particle{} left by {}", grouped(sum), sum == 1 ? "" : "s", by);
 }
 
-void PlayModel::see_losses() {
-  const model::Space& space = simulation->scene().model().space;
-  if (std::none_of(space.walls.begin(), space.walls.end(), [](const auto& w) { return w.type == WallType::open; }))
-    return;
-  std::array<std::uint64_t, 6> out{};
-  for (const std::string& material : simulation->scene().materials())
-    simulation->visit(material, {}, [&](const ParticleBatch& some) {
-      for (const Vec3d& x : some.position)
-        for (int a = 0; a < 3; ++a)
-          out[std::size_t(2 * a)] += x[a]<space.min[a], out[std::size_t(2 * a + 1)] += x[a]> space.end()[a];
-    });
-  const std::uint64_t gone = simulation->counts().left;
-  const std::uint64_t more = gone - std::min(gone, losses.seen);
+void Losses::count(const Simulation& simulation, double played) {
+  const auto& walls = simulation.scene().model().space.walls;
+  if (std::none_of(walls.begin(), walls.end(), [](const auto& w) { return w.type == WallType::open; })) return;
+  const std::uint64_t gone = simulation.counts().left, more = gone - std::min(gone, seen);
   if (more > 0) {
-    if (clock.played > losses.last + lossless) losses.gone = {};
+    if (played > last + pause_of_stream) stream = {}, message.clear();
     // By the side beyond which most were: they are taken out a box's width behind it.
-    const auto side = std::max_element(losses.out.begin(), losses.out.end()) - losses.out.begin();
-    losses.gone[std::size_t(side)] += more, losses.all[std::size_t(side)] += more;
-    losses.last = clock.played, losses.unsaid = true;
+    const auto side = static_cast<std::size_t>(std::max_element(outside.begin(), outside.end()) - outside.begin());
+    stream[side] += more, all[side] += more;
+    last = played, has_news = true;
   }
-  losses.seen = gone, losses.out = out;
-  if (!losses.unsaid || clock.played < losses.said + loss_pause) return;
-  losses.said = clock.played, losses.unsaid = false;
-  say(fmt::format("{}: {}", lost_text(losses.gone), history.can_undo() ? "Undo" : "Rewind"));
+  seen = gone, outside = count_outside(simulation);
 }
 
-void PlayModel::forget_losses() {
-  losses = {.all = losses.all};
-  losses.seen = simulation->counts().left;
+void Losses::forget_stream(const Simulation& simulation) {
+  *this = {.all = all};
+  seen = simulation.counts().left;
 }
+
+bool Losses::may_begin(double played) const { return played >= began + pause_of_messages; }
 
 }  // namespace dreampm::play

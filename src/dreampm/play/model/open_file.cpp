@@ -36,7 +36,7 @@ bool is_record(const std::filesystem::path& file) {
 
 FileKind kind_of_file(const std::filesystem::path& file) {
   const std::string end = ending(file);
-  if (end == ".yaml" || end == ".yml") return FileKind::stage;
+  if (end == ".yaml" || end == ".yml") return FileKind::scene;
   if (std::ranges::find(meshes, end) != meshes.end()) return FileKind::mesh;
   return is_record(file) ? FileKind::record : FileKind::other;
 }
@@ -46,7 +46,7 @@ Action opening(const std::filesystem::path& file) {
   if (!std::filesystem::is_regular_file(file, error))
     throw InputError(fmt::format("{}: there is no such file", file.string()));
   switch (kind_of_file(file)) {
-    case FileKind::stage:
+    case FileKind::scene:
     case FileKind::mesh:
       return {"open", {file.string()}};
     case FileKind::record:

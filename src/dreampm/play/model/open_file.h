@@ -9,7 +9,7 @@
 namespace dreampm::play {
 
 enum class FileKind {
-  stage,   ///< a scene, or a config of the report
+  scene,   ///< a scene, or a config of the report
   mesh,    ///< a mesh, or a cloud of points
   record,  ///< of a window (--record), which is played again
   other

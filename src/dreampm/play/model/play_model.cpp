@@ -3,14 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/error.h"
 #include "dreampm/model/scene.h"
+#include "dreampm/play/model/compare.h"
+#include "dreampm/play/model/controls.h"
+#include "dreampm/play/model/facts.h"
+#include "dreampm/play/model/firmness.h"
+#include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/solver_choice.h"
+#include "dreampm/play/report/report_config.h"
+#include "dreampm/play/report/report_looks.h"
 
 namespace dreampm::play {
 namespace {
@@ -37,11 +43,11 @@ PlayModel::PlayModel(PlayScene first, const PlayOptions& o) : options(o), histor
 
 PlayModel::Begun PlayModel::begin(PlayScene scene) const {
   ToolSet own;
-  for (const auto& tool : own) tool->take(scene.scene);
-  Simulation fresh(scene.scene, options.simulation);
-  for (const auto& tool : own) tool->put(fresh);
-  loosen_surfaces(fresh);
-  return {std::move(scene), std::move(fresh)};
+  for (const auto& tool : own) tool->load(scene.scene);
+  Simulation its_simulation(scene.scene, options.simulation);
+  for (const auto& tool : own) tool->start(its_simulation);
+  loosen_surfaces(its_simulation);
+  return {std::move(scene), std::move(its_simulation)};
 }
 
 void PlayModel::open(Begun next) {
@@ -52,33 +58,33 @@ void PlayModel::open(Begun next) {
   settings.time_step = std::min(settings.time_step, play_scene().max_time_step);
   const model::Scene& scene = play_scene().scene.model();
   settings.cfl = is_projection(scene) ? scene.time.cfl : WorldSettings{}.cfl;
-  choose_matter();
+  choose_matter(*simulation, refusals, settings);
 }
 
-void PlayModel::enter(std::shared_ptr<const LoadedScene> what, Simulation fresh) {
+void PlayModel::enter(std::shared_ptr<const LoadedScene> what, Simulation its_simulation) {
   loaded = std::move(what);
-  simulation.emplace(std::move(fresh));
+  simulation.emplace(std::move(its_simulation));
   begin_anew<&PlayFieldUse::opens>(*this);
-  bodies.clear();
   gravity = play_scene().scene.model().gravity;
   no_other = why_not_other(play_scene());
   list_controls();
-  see_new_matter();
-  forget_losses();
+  arrivals.see(*simulation);
+  losses.forget_stream(*simulation);
 }
 
 void PlayModel::restart() {
   // Materials stay as they are set.
   std::map<std::string, double> values;
   for (const ControlInfo& c : *controls)
-    if (c.id.starts_with("material.") && !look_member(c.id))
-      values[c.id] = targets.contains(c.id) ? targets[c.id] : value_of(c);
+    if (material_key(c.id) && !look_member(looks, c.id))
+      values[c.id] = targets.contains(c.id) ? targets[c.id] : control_value(c, *this, *simulation);
   simulation->restore(loaded->start);
   list_controls();
   begin_anew<&PlayFieldUse::jumps>(*this);
   for (const ControlInfo& c : *controls) {
     const auto value = values.find(c.id);
-    if (value != values.end() && value->second != value_of(c)) set_material(c.id, value->second);
+    if (value != values.end() && value->second != control_value(c, *this, *simulation))
+      set_parameter(*simulation, c.id, value->second);
   }
   clock.restart_is_due = false;
   end_tools();
@@ -88,9 +94,9 @@ void PlayModel::end_tools() {
   begin_anew<&PlayFieldUse::ends>(*this);
   // The snapshot may be of a moment at which a tool worked.
   for (const auto& tool : tools) tool->reset(*this);
-  arrivals.ages.back_to(simulation->time()), arrivals.seen_until.reset();
+  arrivals.jump(*simulation);
   gravity = simulation->scene().model().gravity;
-  forget_losses();
+  losses.forget_stream(*simulation);
 }
 
 void PlayModel::go_to(const StateSnapshot& moment) {
@@ -123,11 +129,11 @@ int PlayModel::advance(const Playground::Limit& limit) {
   const auto began = std::chrono::steady_clock::now();
   const double from = simulation->time(), asked = asked_seconds();
   // Of a pace below a step a tick, whole steps are saved up for. A side that stands still since the
-  // other does owes nothing.
+  // other does has nothing pending.
   if (limit.simulated)
-    clock.owed += *limit.simulated;
+    clock.pending += *limit.simulated;
   else if (!limit.steps || *limit.steps > 0)
-    clock.owed = std::min(clock.owed + asked, std::max(2 * asked, simulation->dt()));
+    clock.pending = std::min(clock.pending + asked, std::max(2 * asked, simulation->dt()));
   int taken = 0;
   bool gave_way = false;
   const auto steps = [&](int count) {
@@ -136,7 +142,7 @@ int PlayModel::advance(const Playground::Limit& limit) {
     // The force on a wall is the mean over the tick, in however many calls it is done.
     const StepReport last = simulation->advance_steps(count, taken > 0 ? ForceMean::goes_on : ForceMean::of_this_call);
     cost.latest = 0.5 * (cost.latest + seconds_since(at) / count);
-    clock.owed -= last.time - before;
+    clock.pending -= last.time - before;
     meters.taken_dt = last.dt;
     // The last step of a frame ends with it; what limited those before says more.
     if (last.limiter != "frame" || meters.limiter.empty()) meters.limiter = last.limiter;
@@ -146,9 +152,9 @@ int PlayModel::advance(const Playground::Limit& limit) {
     if (*limit.steps > 0) steps(*limit.steps);
   } else {
     bool in_time = true;
-    while (in_time && clock.owed > 0.5 * simulation->dt()) {
+    while (in_time && clock.pending > 0.5 * simulation->dt()) {
       if (taken > 0 && limit.gives_way && (gave_way = limit.gives_way())) break;
-      int count = std::max(1, static_cast<int>(std::lround(clock.owed / simulation->dt())));
+      int count = std::max(1, static_cast<int>(std::lround(clock.pending / simulation->dt())));
       if (limit.seconds) {
         const double left = *limit.seconds - seconds_since(began);
         in_time = taken == 0 || (left > 0 && !(limit.ends && limit.ends(*limit.seconds - left)));
@@ -158,13 +164,13 @@ int PlayModel::advance(const Playground::Limit& limit) {
       }
       steps(count);
     }
-    if (!in_time) clock.owed = std::min(clock.owed, 0.0);  // what could not be done in time is left out
+    if (!in_time) clock.pending = std::min(clock.pending, 0.0);  // what could not be done in time is left out
   }
   if (taken > 0) {
     const double each = seconds_since(began) / taken;
     cost.mean += (cost.mean > 0 ? 1 / ticks_a_second : 1) * (each - cost.mean);
   }
-  meters.substeps = taken, meters.remedy = remedy();
+  meters.substeps = taken, meters.remedy = remedy(*simulation, meters.limiter);
   meters.step_ms = 1e3 * cost.latest;
   meters.asked_dt = play_scene().report ? settings.time_step * 1e-4 : asked / std::max(taken, 1);
   // A tick that gave way says nothing about the pace.
@@ -181,7 +187,7 @@ void PlayModel::jump(Jump where, const std::string& why) {
     go_to(*before);
   else
     restart();
-  clock.jumped = before ? Jump::back : Jump::anew;
+  clock.last_jump = before ? Jump::back : Jump::anew;
   say(fmt::format("{}: {}", before ? "went back a moment" : "began anew", why), true);
 }
 
@@ -195,7 +201,7 @@ int PlayModel::fail(std::uint64_t before_steps, const std::string& why) {
 
 int PlayModel::tick(const Playground::Limit& limit) {
   ++clock.ticks;
-  clock.jumped = Jump::none;
+  clock.last_jump = Jump::none;
   if (clock.restart_is_due) restart();
   // A counted tick of no steps is one that stood still when it was recorded.
   if (settings.paused && !clock.single_step && !limit.simulated && limit.steps.value_or(0) == 0) {
@@ -217,21 +223,90 @@ int PlayModel::tick(const Playground::Limit& limit) {
     // What the tool or a slider asked for does not go with the scene.
     taken = fail(before_steps, e.what());
   }
-  see_new_matter();
-  see_losses();
+  arrivals.see(*simulation);
+  say_losses();
   clock.played += 1 / ticks_a_second;
   if (history.is_due(clock.played)) history.keep(moment());
   return taken;
 }
 
-std::shared_ptr<Frame> PlayModel::frame() {
-  // One that nobody reads any more keeps its memory.
-  auto idle = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.use_count() == 1; });
-  // What its last reader did comes before what is written into it.
-  std::atomic_thread_fence(std::memory_order_acquire);
-  if (idle == frames.end()) idle = frames.insert(idle, std::make_shared<Frame>());
-  read(**idle);
-  return *idle;
+void PlayModel::say_losses() {
+  losses.count(*simulation, clock.played);
+  if (!losses.has_news) return;
+  const bool goes_on = !losses.message.empty() && message.text == losses.message;
+  if (!goes_on && !losses.may_begin(clock.played)) return;
+  losses.message = fmt::format("{}: {}", lost_text(losses.stream), history.can_undo() ? "Undo" : "Rewind");
+  losses.has_news = false;
+  if (goes_on)
+    message.text = losses.message, ++message.changes;
+  else
+    say(losses.message), losses.began = clock.played;
+}
+
+void PlayModel::approach_targets() {
+  // Of the report: the deformation is forgotten, places and velocities are kept.
+  const bool forgets = play_scene().report && !settings.auto_restart;
+  for (const std::string& material : play::approach_targets(*simulation, *controls, looks, targets))
+    if (forgets) simulation->reset_state(material);
+}
+
+void PlayModel::list_controls() {
+  controls = std::make_shared<const std::vector<ControlInfo>>(play::list_controls(play_scene(), *simulation, looks));
+  refusals = matter_refusals(simulation->scene().model());
+}
+
+void PlayModel::set(const std::string& id, double value) {
+  const ControlInfo& control = find_control(*controls, id);
+  check_value(control, value);
+  const auto warn_of_softness = [&](const std::vector<double>& before) {
+    std::string warning = softness_warning(*simulation, *controls, before, asked_values(*controls, *this, *simulation));
+    if (!warning.empty()) say(std::move(warning));
+  };
+  for (const SettingControl& c : setting_controls()) {
+    if (c.info.id != id) continue;
+    // A tilt sets all of gravity: one edit.
+    if (c.of_world) before_edit("set " + id.substr(0, id.find('.')));
+    const std::vector<double> before = asked_values(*controls, *this, *simulation);
+    c.set(settings, value);
+    if (c.of_world) warn_of_softness(before);
+    return;
+  }
+  if (float* member = look_member(looks, id)) {
+    *member = static_cast<float>(value);
+    return;
+  }
+  if (value == control_value(control, *this, *simulation) && !targets.contains(id)) return;
+  before_edit("set " + id);
+  const std::vector<double> before = asked_values(*controls, *this, *simulation);
+  targets[id] = value;
+  if (is_of_firmness(material_key(id)->key)) warn_of_softness(before);
+  if (play_scene().report && settings.auto_restart) clock.restart_is_due = true;
+}
+
+void PlayModel::set_report_look(const ReportLook& look) {
+  const std::string name = report_material_name(diy_material);
+  const auto has = [&](const ControlInfo& c) { return c.id == material_control_id(name, "v"); };
+  if (!play_scene().report || std::none_of(controls->begin(), controls->end(), has))
+    throw InputError("look: only the report's scenes have its material; open report 1");
+  // Whatever it sets.
+  before_own_edit("look");
+  for (const auto& [key, value] : look.values()) targets[material_control_id(name, key)] = value;
+  if (settings.auto_restart) clock.restart_is_due = true;
+}
+
+std::string PlayModel::ensure_matter(std::size_t kind) {
+  if (const auto& own = compared.replacement;
+      own && matters()[kind].name == compared.replaced && !other_liquid(simulation->scene().model(), *own))
+    kind = *own;
+  const Matter& matter = matters()[kind];
+  const std::vector<std::string> names = simulation->scene().materials();
+  if (std::find(names.begin(), names.end(), matter.name) != names.end()) return std::string(matter.name);
+  if (!refusals[kind].empty())
+    throw InputError(fmt::format("{}: {}; the other solver can (key {})", matter.title, refusals[kind], solver_key));
+  const model::Scene& kinds = scene_of_kinds();
+  simulation->add_material(kinds.materials.at(kind), kinds.render.looks.at(std::string(matter.name)));
+  list_controls();
+  return std::string(matter.name);
 }
 
 }  // namespace dreampm::play

@@ -18,14 +18,14 @@ constexpr const char* explicit_variant = "explicit";
 /// How the report's own settings are called in place of a file.
 constexpr std::string_view report_name = "report";
 
-PlayScene stage_of(const ReportConfig& config, std::size_t preset, const std::string& file) {
-  Scene scene = parse_scene(report_scene(config, preset), file);
+PlayScene play_scene_of(const ReportConfig& config, std::size_t preset, const std::string& file) {
+  Scene own = parse_scene(report_scene(config, preset), file);  // refuses a preset that there is not
   std::string name = fmt::format("{} {}", report_name, config.presets.at(preset).name);
-  PlayScene stage{std::move(name), std::move(scene), true, config.max_time_step, config.max_hard, file, {}, preset};
-  for (const ReportPreset& p : config.presets) stage.presets.push_back(p.name);
-  for (const ReportMaterial& m : config.materials) stage.opacity[report_material_name(m.id)] = m.color[3];
-  stage.window = PlayScene::Window{config.width, config.height};
-  return stage;
+  PlayScene scene{std::move(name), std::move(own), true, config.max_time_step, config.max_hard, file, {}, preset};
+  for (const ReportPreset& p : config.presets) scene.presets.push_back(p.name);
+  for (const ReportMaterial& m : config.materials) scene.opacity[report_material_name(m.id)] = m.color[3];
+  scene.window = PlayScene::Window{config.width, config.height};
+  return scene;
 }
 
 bool has_key(std::string_view text, std::string_view key) {
@@ -38,12 +38,12 @@ PlayScene load_play_scene(const std::string& name_or_file, std::size_t preset) {
   for (const Story& s : stories())
     if (s.name == name_or_file) {
       const std::string file = std::string(s.name) + ".yaml";
-      PlayScene stage{std::string(s.name), parse_scene(s.scene, file)};
+      PlayScene scene{std::string(s.name), parse_scene(s.scene, file)};
       if (has_key(s.scene, std::string("  ") + explicit_variant + ":"))
-        stage.other = parse_scene(s.scene, file, {explicit_variant, {}});
-      return stage;
+        scene.other = parse_scene(s.scene, file, {explicit_variant, {}});
+      return scene;
     }
-  if (name_or_file == report_name) return stage_of(report_config(), preset, name_or_file);
+  if (name_or_file == report_name) return play_scene_of(report_config(), preset, name_or_file);
   if (!std::filesystem::exists(name_or_file)) {
     std::string names{report_name};
     for (const Story& s : stories()) names += fmt::format(", {}", s.name);
@@ -57,7 +57,7 @@ PlayScene load_play_scene(const std::string& name_or_file, std::size_t preset) {
     throw InputError(fmt::format("{} is a record: drop it into a window, or dreampm play STORY --headless --script {}",
                                  name_or_file, name_or_file));
   if (const std::string text = read_file(name_or_file); has_key(text, "presets:") && !has_key(text, "dreampm:"))
-    return stage_of(parse_report_config(text, name_or_file), preset, name_or_file);
+    return play_scene_of(parse_report_config(text, name_or_file), preset, name_or_file);
   Scene scene = load_scene(name_or_file);
   std::string name = scene.name();
   return {std::move(name), std::move(scene)};

@@ -2,9 +2,7 @@
 // They stand in one list, with when each of them begins anew: a member that is not in it does not
 // compile.
 #pragma once
-#include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -13,6 +11,8 @@
 #include "dreampm/play/model/ages.h"
 #include "dreampm/play/model/control.h"
 #include "dreampm/play/model/frame.h"
+#include "dreampm/play/model/losses.h"
+#include "dreampm/play/model/material_controls.h"
 #include "dreampm/play/tools/tool.h"
 #include "dreampm/vec.h"
 
@@ -23,9 +23,9 @@ enum class Jump { none, back, anew };
 
 /// How time goes on.
 struct Clock {
-  double played = 0;         ///< s of playing, which going back takes back
-  double owed = 0;           ///< s of simulated time that were asked for and are not done
-  Jump jumped = Jump::none;  ///< in the last tick
+  double played = 0;            ///< s of playing, which going back takes back
+  double pending = 0;           ///< s of simulated time that were asked for and are not done
+  Jump last_jump = Jump::none;  ///< in the last tick
   bool single_step = false;
   bool restart_is_due = false;
   int failures = 0;  ///< since matter last moved well
@@ -38,44 +38,31 @@ struct StepCost {
   double mean = 0;  ///< over about a second; 0: none was taken
 };
 
-/// What left by open walls; sides count as in Side.
-struct Losses {
-  std::array<std::uint64_t, 6> gone{};  ///< particles, of late
-  std::array<std::uint64_t, 6> all{};   ///< and since the scene was opened
-  std::array<std::uint64_t, 6> out{};   ///< that are beyond the walls now
-  std::uint64_t seen = 0;               ///< gone so far, by the world's own count
-  double last = 0, said = -1;           ///< s of playing: when some were lost, and when it was said
-  bool unsaid = false;
-};
-/// "1,200 particles left by the top"; empty where none did.
-std::string lost_text(const std::array<std::uint64_t, 6>& by_side);
-
-/// When matter came in.
-struct Arrivals {
-  Ages ages;
-  std::optional<std::uint32_t> seen_until{};  ///< the id of the next particle, when ages saw all; absent: they did not
-};
-
 /// The last thing that was refused, mended or saved.
 struct Message {
   std::string text{};
   bool is_error = false;
-  std::uint64_t number = 0;  ///< counts messages
+  std::uint64_t number = 0;   ///< counts messages
+  std::uint64_t changes = 0;  ///< of the text of this one: what it counts has become more
+
+  bool is_older_than(const Message& other) const {
+    return number != other.number ? number < other.number : changes < other.changes;
+  }
 };
 
 /// While materials are compared: what this side is called after, and the kind of matter that is
 /// there instead of another material.
 struct ComparedMatter {
-  std::string main{}, stand_in_for{};
-  std::optional<std::size_t> stand_in{};
+  std::string main{}, replaced{};
+  std::optional<std::size_t> replacement{};
 };
 
 struct PlayState {
   Settings settings;
   Clock clock;
-  std::map<std::string, double> targets;    ///< of material controls that are under way
-  std::map<std::string, MatterLook> looks;  ///< by the name of the material
-  Vec3d gravity{};                          ///< m/s^2, that the simulation has
+  Targets targets;
+  Looks looks;
+  Vec3d gravity{};  ///< m/s^2, that the simulation has
   ToolSet tools;
   Losses losses;
   Arrivals arrivals;
@@ -118,10 +105,10 @@ template <class State>
 auto fields_of(State& state) {
   using namespace play_use;
   auto& [settings, clock, targets, looks, gravity, tools, losses, arrivals, compared, meters, cost, message] = state;
-  auto& [played, owed, jumped, single_step, restart_is_due, failures, ticks] = clock;
+  auto& [played, pending, last_jump, single_step, restart_is_due, failures, ticks] = clock;
   return std::tuple{
-      play_field<stays>(settings),    play_field<found>(played),         play_field<of_tick>(owed),
-      play_field<stays>(jumped),      play_field<of_scene>(single_step), play_field<of_scene>(restart_is_due),
+      play_field<stays>(settings),    play_field<found>(played),         play_field<of_tick>(pending),
+      play_field<stays>(last_jump),   play_field<of_scene>(single_step), play_field<of_scene>(restart_is_due),
       play_field<of_scene>(failures), play_field<stays>(ticks),          play_field<under_way>(targets),
       play_field<of_scene>(looks),    play_field<found>(gravity),        play_field<of_scene>(tools),
       play_field<of_scene>(losses),   play_field<of_scene>(arrivals),    play_field<stays>(compared),

@@ -9,6 +9,7 @@
 #include "dreampm/base/hash.h"
 #include "dreampm/error.h"
 #include "dreampm/model/scene.h"
+#include "dreampm/play/model/compare.h"
 #include "dreampm/play/model/play_model.h"
 
 namespace dreampm::play {
@@ -22,7 +23,7 @@ PlayModel& Playground::chosen() const {
 }
 
 void Playground::act(const Action& action) {
-  ++first_->actions;
+  ++actions_;
   const auto entry = std::find_if(verbs().begin(), verbs().end(), [&](const Verb& v) { return v.name == action.verb; });
   if (entry == verbs().end()) {
     std::string names;
@@ -46,10 +47,10 @@ void Playground::act(const Action& action) {
 
 void Playground::compare(std::optional<std::size_t> kind) {
   PlayModel& first = *first_;
-  first.compared.main = first.main_material();
+  first.compared.main = main_material(*first.simulation);
   PlayOptions options = first.options;
   auto second = std::make_unique<PlayModel>(first.play_scene(), options);
-  second->copy(first, kind);
+  begin_second_side(*second, first, kind);
   // All three share the memory that one had.
   History past = comparison_ ? std::move(comparison_->before) : std::move(first.history);
   options.history_bytes = first.options.history_bytes / 3;
@@ -79,7 +80,12 @@ void Playground::open(PlayScene scene) {
   const auto kind = comparison_->kind;
   end_comparison();
   first_->open(std::move(next));
-  compare(kind);
+  try {
+    compare(kind);
+  } catch (const InputError& e) {
+    // The scene is there, without what it was to be compared with.
+    first_->say(fmt::format("{}; nothing is compared any more", e.what()), true);
+  }
 }
 
 void Playground::act_on_both(const Verb& verb, const Action& action) {
@@ -119,7 +125,7 @@ void Playground::act_on_both(const Verb& verb, const Action& action) {
 void Playground::share_message() {
   if (!comparison_) return;
   Message &a = first_->message, &b = comparison_->second->message;
-  (a.number < b.number ? a : b) = a.number < b.number ? b : a;
+  (a.is_older_than(b) ? a : b) = a.is_older_than(b) ? b : a;
 }
 
 int Playground::tick(const Limit& limit) {
@@ -135,11 +141,11 @@ int Playground::tick(const Limit& limit) {
   }
   const double from = first.simulation->time();
   const int taken = first.tick(own);
-  const auto follow = [](PlayModel& to, const PlayModel& jumped) {
-    if (jumped.clock.jumped != Jump::none && to.clock.jumped == Jump::none)
-      to.jump(jumped.clock.jumped, "so did the other side");
+  const auto follow = [](PlayModel& to, const PlayModel& other) {
+    if (other.clock.last_jump != Jump::none && to.clock.last_jump == Jump::none)
+      to.jump(other.clock.last_jump, "so did the other side");
   };
-  if (first.clock.jumped != Jump::none) {
+  if (first.clock.last_jump != Jump::none) {
     follow(second, first);
     second.clock.played = first.clock.played;
   } else if (taken == 0) {
@@ -154,14 +160,14 @@ int Playground::tick(const Limit& limit) {
 }
 
 std::shared_ptr<const Frame> Playground::frame() {
-  const std::shared_ptr<Frame> own = chosen().frame();
-  own->actions = first_->actions;
+  const std::shared_ptr<Frame> own = chosen().frames.read(chosen());
+  own->actions = actions_;
   own->side = 0, own->other.reset();
   if (!comparison_) return own;
   const bool is_second = comparison_->second_is_chosen;
   PlayModel& beside = is_second ? *first_ : *comparison_->second;
-  const std::shared_ptr<Frame> other = beside.frame();
-  other->other.reset();
+  const std::shared_ptr<Frame> other = beside.frames.read(beside);
+  other->other.reset(), other->actions = actions_;
   own->side = is_second ? 'B' : 'A', other->side = is_second ? 'A' : 'B';
   own->side_name = chosen().compared.main, other->side_name = beside.compared.main;
   // One scale for both.

@@ -36,7 +36,7 @@ struct Verb;
 class Playground {
  public:
   /// Throws InputError for a scene that cannot start.
-  Playground(PlayScene stage, const PlayOptions& options);
+  Playground(PlayScene scene, const PlayOptions& options);
   ~Playground();
 
   /// Throws InputError for what cannot be done; nothing is changed then. It acts from the next tick
@@ -75,7 +75,7 @@ class Playground {
 
   /// Another scene takes the place of what is played: an edit as others are. What is compared
   /// begins anew. Throws InputError for a scene that cannot start; nothing is changed then.
-  void open(PlayScene stage);
+  void open(PlayScene scene);
   /// The scene begins anew with that many particles, an index into size_names(). So do those that
   /// are opened after it.
   void resize(std::size_t size);
@@ -107,6 +107,7 @@ class Playground {
   std::unique_ptr<PlayModel> first_;
   std::optional<Comparison> comparison_;
   std::optional<std::size_t> size_;  ///< that was asked for
+  std::uint64_t actions_ = 0;        ///< done so far
 };
 
 }  // namespace dreampm::play

@@ -1,4 +1,5 @@
-// Copies what the playground shows out of its simulation.
+#include "dreampm/play/model/readback.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +9,8 @@
 #include "dreampm/math/rng.h"
 #include "dreampm/model/scene.h"
 #include "dreampm/play/model/cell_means.h"
+#include "dreampm/play/model/controls.h"
+#include "dreampm/play/model/facts.h"
 #include "dreampm/play/model/live_range.h"
 #include "dreampm/play/model/play_model.h"
 #include "dreampm/play/model/solver_choice.h"
@@ -141,67 +144,93 @@ void list_bodies(const Simulation& simulation, const ToolSet& tools, std::vector
   }
 }
 
-}  // namespace
-
-void PlayModel::see_new_matter() {
-  const double now = simulation->time();
-  const std::uint32_t next = simulation->next_id();
-  if (arrivals.seen_until == next) return;
-  for (const std::string& material : simulation->scene().materials())
-    simulation->visit(material, {.position = false, .id = true},
-                      [&](const ParticleBatch& some) { arrivals.ages.see(some.id, now); });
-  arrivals.seen_until = next;
+/// What the scene is, and where the simulation stands.
+void read_scene(const PlayModel& side, Frame& frame) {
+  const PlayScene& played = side.play_scene();
+  const Simulation& simulation = *side.simulation;
+  const model::Scene& scene = simulation.scene().model();
+  frame.number = side.clock.ticks;
+  frame.story = played.name, frame.about = scene.about;
+  frame.preset_file = played.file, frame.presets = played.presets, frame.preset = played.preset;
+  frame.time = simulation.time(), frame.steps = simulation.steps(), frame.particles = simulation.particle_count();
+  frame.size = played.size, frame.can_resize = !played.report && played.scene.model().start.empty();
+  frame.solver = static_cast<std::size_t>(scene.time.solver);
+  frame.no_other = side.no_other, frame.matter_refusals = side.refusals;
+  frame.domain = {scene.space.min, scene.space.end()}, frame.spacing = scene.space.spacing;
+  set_camera(scene, played.report, frame);
 }
 
-void PlayModel::read(Frame& frame) {
-  const model::Scene& scene = simulation->scene().model();
-  frame.number = clock.ticks, frame.actions = actions;
-  frame.story = play_scene().name, frame.about = scene.about;
-  frame.preset_file = play_scene().file, frame.presets = play_scene().presets, frame.preset = play_scene().preset;
-  frame.time = simulation->time(), frame.steps = simulation->steps(), frame.particles = simulation->particle_count();
-  frame.size = play_scene().size, frame.can_resize = !play_scene().report && play_scene().scene.model().start.empty();
-  frame.solver = static_cast<std::size_t>(scene.time.solver);
-  frame.no_other = no_other, frame.matter_refusals = refusals;
-  frame.domain = {scene.space.min, scene.space.end()}, frame.spacing = scene.space.spacing;
-  frame.matter.resize(scene.materials.size());
-  for (std::size_t m = 0; m < scene.materials.size(); ++m)
-    frame.matter[m].name = scene.materials[m].name,
-    frame.matter[m].look = std::make_shared<const MatterLook>(looks.at(scene.materials[m].name));
-  set_camera(scene, play_scene().report, frame);
+/// s: how much later than the simulation matter is shown. In slow motion a large step lasts for
+/// pictures on end. They show matter on its way through it, at the velocity that took it.
+double time_ahead(const PlayModel& side) {
+  const double dt = side.simulation->dt();
+  if (!is_projection(side.simulation->scene().model()) || dt <= side.asked_seconds()) return 0;
+  return std::clamp(side.clock.pending - 0.5 * dt, -side.meters.taken_dt, 0.0);
+}
+
+void read_matter(const PlayModel& side, Frame& frame) {
+  const std::vector<model::Material>& materials = side.simulation->scene().model().materials;
+  frame.matter.resize(materials.size());
+  for (std::size_t m = 0; m < materials.size(); ++m)
+    frame.matter[m].name = materials[m].name,
+    frame.matter[m].look = std::make_shared<const MatterLook>(side.looks.at(materials[m].name));
   frame.value_label.clear(), frame.value_unit.clear();
-  const std::string& choice = color_choices()[settings.color_by];
+  const std::string& choice = color_choices()[side.settings.color_by];
   const auto coloring =
       std::find_if(std::begin(colorings), std::end(colorings), [&](const Coloring& c) { return c.choice == choice; });
-  // In slow motion a large step lasts for pictures on end. They show matter on its way through it,
-  // at the velocity that took it.
-  const bool is_slow = is_projection(scene) && simulation->dt() > asked_seconds();
-  const double ahead = is_slow ? std::clamp(clock.owed - 0.5 * simulation->dt(), -meters.taken_dt, 0.0) : 0;
+  const double ahead = time_ahead(side);
   if (coloring == std::end(colorings))
-    read_positions(*simulation, settings.random_colors, ahead, frame);
+    read_positions(*side.simulation, side.settings.random_colors, ahead, frame);
   else
-    read_values(*simulation, *coloring, arrivals.ages, ahead, frame);
-  list_bodies(*simulation, tools, bodies);
-  frame.bodies = bodies;
-  for (BodyFrame& b : frame.bodies) b.pose = simulation->collider(b.name).pose;
+    read_values(*side.simulation, *coloring, side.arrivals.ages, ahead, frame);
+}
+
+/// Of the past, of films and of messages.
+void read_rest(const PlayModel& side, Frame& frame) {
+  Films& films = *side.films;
+  frame.rendering = films.rendering ? std::make_shared<const RenderStatus>(films.rendering->look()) : nullptr;
+  frame.film = films.file, frame.film_fps = films.fps;
+  frame.past = side.history.first() > 0 ? side.clock.played - side.history.first() : 0;
+  frame.future = std::max(0.0, side.history.last() - side.clock.played);
+  frame.can_undo = side.history.can_undo(), frame.can_redo = side.history.can_redo();
+  frame.message = side.message.text, frame.message_is_error = side.message.is_error;
+  frame.message_number = side.message.number;
+  frame.lost = lost_text(side.losses.all);
+}
+
+}  // namespace
+
+void FrameReader::read_bodies(const PlayModel& side, Frame& frame) {
+  if (bodies_of_ != side.loaded) bodies_.clear(), bodies_of_ = side.loaded;
+  list_bodies(*side.simulation, side.tools, bodies_);
+  frame.bodies = bodies_;
+  for (BodyFrame& b : frame.bodies) b.pose = side.simulation->collider(b.name).pose;
   frame.room = frame.domain, frame.marks.clear(), frame.buttons.clear();
-  for (const auto& tool : tools) tool->marks(*this, frame);
-  frame.meters = meters, frame.settings = settings;
-  frame.controls = controls;
-  frame.values = asked_values();
+  for (const auto& tool : side.tools) tool->marks(side, frame);
+}
+
+void FrameReader::read_controls(const PlayModel& side, Frame& frame) {
+  frame.meters = side.meters, frame.settings = side.settings;
+  frame.controls = side.controls;
+  frame.values = asked_values(*side.controls, side, *side.simulation);
   // They need not follow each picture.
-  if (live.of != controls || clock.ticks >= live.at + 15)
-    live = {live_ranges(*simulation, *controls, frame.values, options.step_seconds.value_or(cost.mean),
-                        ticks_a_second * asked_seconds()),
-            controls, clock.ticks};
-  frame.live = live.ranges;
-  frame.facts = facts();
-  frame.rendering = films->rendering ? std::make_shared<const RenderStatus>(films->rendering->look()) : nullptr;
-  frame.film = films->file, frame.film_fps = films->fps;
-  frame.past = history.first() > 0 ? clock.played - history.first() : 0;
-  frame.future = std::max(0.0, history.last() - clock.played);
-  frame.can_undo = history.can_undo(), frame.can_redo = history.can_redo();
-  frame.message = message.text, frame.message_is_error = message.is_error, frame.message_number = message.number;
-  frame.lost = lost_text(losses.all);
+  constexpr std::uint64_t ticks_between = 15;
+  if (live_.of != side.controls || side.clock.ticks >= live_.at + ticks_between)
+    live_ = {live_ranges(*side.simulation, *side.controls, frame.values,
+                         side.options.step_seconds.value_or(side.cost.mean), ticks_a_second * side.asked_seconds()),
+             side.controls, side.clock.ticks};
+  frame.live = live_.ranges;
+  frame.facts = material_facts(*side.simulation);
+}
+
+std::shared_ptr<Frame> FrameReader::read(const PlayModel& side) {
+  std::shared_ptr<Frame> frame = pool_.next();
+  read_scene(side, *frame);
+  read_matter(side, *frame);
+  read_bodies(side, *frame);
+  read_controls(side, *frame);
+  read_rest(side, *frame);
+  return frame;
 }
 
 }  // namespace dreampm::play

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "dreampm/base/file.h"
+#include "dreampm/base/log.h"
 #include "dreampm/base/seconds_since.h"
 #include "dreampm/error.h"
 
@@ -28,6 +29,8 @@ namespace {
 
 constexpr std::array<std::string_view, 4> stage_names{"simulate", "surface", "render", "video"};
 constexpr int interrupted_code = 130;
+/// s: how long a film may take to stop before that is said.
+constexpr double silent = 0.5;
 
 std::string reason(int code) { return std::strerror(code); }
 
@@ -68,11 +71,15 @@ Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene,
 Rendering::~Rendering() {
   using State = RenderStatus::State;
   // Of an estimate no file stays.
-  if (status_.state == State::estimating || status_.state == State::estimated) put_off();
+  if (status_.state == State::estimating || status_.state == State::estimated) discard();
   if (child_ <= 0) return;
   ::kill(child_, SIGINT);
   const auto began = Clock::now();
+  bool is_said = false;
   while (::waitpid(child_, nullptr, WNOHANG) == 0) {
+    if (seconds_since(began) > silent && !std::exchange(is_said, true))
+      info("waiting up to {:.0f} s for the film to stop; dreampm make {} goes on with it",
+           std::chrono::duration<double>(patience_).count(), status_.scene);
     if (Clock::now() - began > patience_) {
       ::kill(child_, SIGKILL);
       ::waitpid(child_, nullptr, 0);
@@ -125,13 +132,13 @@ void Rendering::make() {
 
 void Rendering::stop() {
   using State = RenderStatus::State;
-  if (status_.state == State::estimating || status_.state == State::estimated) return put_off();
+  if (status_.state == State::estimating || status_.state == State::estimated) return discard();
   if (child_ <= 0 || stops_) return;
   stops_ = true;
   ::kill(child_, SIGINT);
 }
 
-void Rendering::put_off() {
+void Rendering::discard() {
   if (child_ > 0) {
     ::kill(child_, SIGKILL);
     ::waitpid(child_, nullptr, 0);
@@ -174,7 +181,7 @@ void Rendering::end(int code) {
     return;
   }
   if (status_.state == State::estimating) {
-    take_estimate();
+    read_estimate();
     if (status_.state != State::estimated || !goes_on_) return;
     try {
       make();
@@ -189,7 +196,7 @@ void Rendering::end(int code) {
   if (film != printed_.end()) status_.film = *film;
 }
 
-void Rendering::take_estimate() {
+void Rendering::read_estimate() {
   std::string text;
   std::rewind(answer_.get());
   for (int c = std::fgetc(answer_.get()); c != EOF; c = std::fgetc(answer_.get())) text.push_back(static_cast<char>(c));
@@ -218,12 +225,12 @@ void Rendering::read_log() {
       line_.push_back(c);
       continue;
     }
-    take_line(line_);
+    read_line(line_);
     line_.clear();
   }
 }
 
-void Rendering::take_line(const std::string& line) {
+void Rendering::read_line(const std::string& line) {
   // As Progress writes them: "render: frame 3/48, 5 s left".
   static const std::regex progress("([a-z]+): frame ([0-9]+)/([0-9]+).*");
   printed_.push_back(line);

@@ -23,7 +23,8 @@ class Rendering {
   /// interrupted may take to end before it is killed.
   Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on,
             std::chrono::milliseconds patience = std::chrono::seconds(10));
-  /// Interrupts what runs, which `dreampm make` goes on with, and waits until it has ended.
+  /// Interrupts what runs, which `dreampm make` goes on with, and waits until it has ended, for as
+  /// long as `patience` at most.
   ~Rendering();
   Rendering(const Rendering&) = delete;
   Rendering& operator=(const Rendering&) = delete;
@@ -41,10 +42,10 @@ class Rendering {
 
   void start(const std::vector<std::string>& words, int output);
   void make();
-  void put_off();
-  void take_estimate();
+  void discard();
+  void read_estimate();
   void read_log();
-  void take_line(const std::string& line);
+  void read_line(const std::string& line);
   void expect_rest();
   void end(int code);
 

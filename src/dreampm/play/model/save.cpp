@@ -1,4 +1,5 @@
-// Writes what the playground holds as a scene that `dreampm make` runs.
+#include "dreampm/play/model/save.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include "dreampm/base/file.h"
 #include "dreampm/error.h"
 #include "dreampm/model/scene.h"
-#include "dreampm/play/model/play_model.h"
 
 namespace dreampm::play {
 namespace {
@@ -18,18 +18,19 @@ constexpr double longest_film = 600;
 
 }  // namespace
 
-void PlayModel::save(const std::filesystem::path& file, const SavedAs& as) {
+void save_scene(const std::filesystem::path& file, const SavedAs& as, const Simulation& simulation,
+                const Vec3d& gravity, const ToolSet& tools) {
   if (file.extension() != ".yaml") throw InputError(fmt::format("save: {} must end in .yaml", file.string()));
   if (!file.parent_path().empty()) make_folder(file.parent_path());
   check_replaceable(file);
-  model::Scene now = simulation->scene().model();
+  model::Scene now = simulation.scene().model();
   now.name = file.stem().string();
   now.output.folder = "out/" + now.name;
-  now.gravity = {settings.gravity_x, settings.gravity_y, settings.gravity_z};
+  now.gravity = gravity;
   now.bodies.clear();
   // Time goes on where it is.
   const int more = as.seconds ? static_cast<int>(std::lround(*as.seconds * now.time.fps)) : now.time.frames - 1;
-  now.time.frames = simulation->frame() + std::max(more, 1);
+  now.time.frames = simulation.frame() + std::max(more, 1);
   if (as.seen) {
     model::Camera& camera = now.render.camera;
     camera.fit_basin = false, camera.from = as.seen->from, camera.to = as.seen->to, camera.fov = as.seen->fov;
@@ -42,21 +43,17 @@ void PlayModel::save(const std::filesystem::path& file, const SavedAs& as) {
   }
   std::filesystem::path moment = file;
   moment.replace_extension(".start.h5");
-  for (const auto& tool : tools) tool->save(*simulation, now);
+  for (const auto& tool : tools) tool->save(simulation, now);
   // Beside the scene, which is looked in first.
   now.start = moment.filename().string();
   if (as.finer)
-    simulation->save_moment(moment, Scene(now, moment.string()));
+    simulation.save_moment(moment, Scene(now, moment.string()));
   else
-    simulation->save_moment(moment);
+    simulation.save_moment(moment);
   replace_file_text(file, Scene(std::move(now), file.string()).yaml());
-  if (!as.finer) say(fmt::format("saved {}: dreampm make runs it", std::filesystem::absolute(file).string()));
 }
 
-void PlayModel::render(const Action& action, bool goes_on) {
-  if (options.program.empty()) throw InputError(action.verb + ": no command dreampm that could make a film is known");
-  if (films->rendering && films->rendering->look().state == RenderStatus::State::running)
-    throw InputError(action.verb + ": a film is under way; render off ends it");
+SavedAs finer_scene(const Action& action) {
   SavedAs as;
   as.finer = true, as.seconds = 2;
   if (action.words.size() > 1) as.seconds = action.number(1);
@@ -68,9 +65,7 @@ void PlayModel::render(const Action& action, bool goes_on) {
     };
     as.seen = SavedAs::Seen{vector(2), vector(5), action.number(8)};
   }
-  films->rendering.reset();  // an estimate that was there takes its files along
-  save(action.word(0), as);
-  films->rendering.emplace(options.program, action.word(0), goes_on);
+  return as;
 }
 
 }  // namespace dreampm::play

@@ -1,4 +1,4 @@
-// Small, medium and large: the same stage with other numbers of particles.
+// Small, medium and large: the same scene with other numbers of particles.
 #include <fmt/format.h>
 
 #include <array>
@@ -18,7 +18,7 @@ namespace {
 /// spacing. The costs of a second are 0.3, 1 and 2.5.
 constexpr std::array<double, 3> spacings{1.35, 1, 0.8};
 
-/// s of the clock: what a stage takes to begin, and for how long it is measured.
+/// s of the clock: what a scene takes to begin, and for how long it is measured.
 constexpr double beginning = 0.3, measured = 1;
 /// Of real time: below this the machine does not keep up.
 constexpr double too_slow = 0.75;
@@ -37,16 +37,16 @@ const std::vector<std::string>& size_names() {
   return names;
 }
 
-PlayScene resized(PlayScene stage, std::size_t size) {
-  const model::Scene& scene = stage.scene.model();
-  if (size == stage.size) return stage;
-  if (stage.report) throw InputError("size: the report has a grid of its own");
-  if (!scene.start.empty())
-    throw InputError(fmt::format("size: {} starts from a moment, with the particles that it has", stage.name));
-  const double spacing = scene.space.spacing * spacings.at(size) / spacings.at(stage.size);
-  stage.scene = stage.scene.with({fmt::format("space.spacing={:.6g}", spacing)});
-  stage.size = size;
-  return stage;
+PlayScene resized(PlayScene scene, std::size_t size) {
+  const model::Scene& model = scene.scene.model();
+  if (size == scene.size) return scene;
+  if (scene.report) throw InputError("size: the report has a grid of its own");
+  if (!model.start.empty())
+    throw InputError(fmt::format("size: {} starts from a moment, with the particles that it has", scene.name));
+  const double spacing = model.space.spacing * spacings.at(size) / spacings.at(scene.size);
+  scene.scene = scene.scene.with({fmt::format("space.spacing={:.6g}", spacing)});
+  scene.size = size;
+  return scene;
 }
 
 void Playground::resize(std::size_t size) {

@@ -77,30 +77,30 @@ const std::vector<std::string>& solver_names() {
 }
 bool is_projection(const model::Scene& scene) { return scene.time.solver == SolverKind::projection; }
 
-std::string why_not_other(const PlayScene& stage) {
-  if (stage.report) return "the report has steps of its own";
-  const model::Scene& scene = stage.scene.model();
-  if (!scene.start.empty()) return fmt::format("{} starts from a moment of one solver", stage.name);
-  if (stage.other || is_projection(scene)) return "";
-  model::Scene with = scene;
+std::string why_not_other(const PlayScene& scene) {
+  if (scene.report) return "the report has steps of its own";
+  const model::Scene& model = scene.scene.model();
+  if (!model.start.empty()) return fmt::format("{} starts from a moment of one solver", scene.name);
+  if (scene.other || is_projection(model)) return "";
+  model::Scene with = model;
   with.time.solver = SolverKind::projection, with.time.cfl = usual_projection_cfl;
   return refusal(with);
 }
 
-PlayScene by_solver(PlayScene stage, SolverKind solver) {
-  if (stage.scene.model().time.solver == solver) return stage;
-  if (const std::string why = why_not_other(stage); !why.empty()) throw InputError("solver: " + why);
-  if (!stage.other) {
-    stage.scene = stage.scene.with(settings_of(solver));
-    return stage;
+PlayScene by_solver(PlayScene scene, SolverKind solver) {
+  if (scene.scene.model().time.solver == solver) return scene;
+  if (const std::string why = why_not_other(scene); !why.empty()) throw InputError("solver: " + why);
+  if (!scene.other) {
+    scene.scene = scene.scene.with(settings_of(solver));
+    return scene;
   }
   // What is kept is of medium size.
-  PlayScene kept = stage;
+  PlayScene kept = scene;
   kept.other.reset();
-  const std::size_t size = std::exchange(stage.size, medium_size);
-  stage.scene = std::move(*stage.other);
-  stage.other = resized(std::move(kept), medium_size).scene;
-  return resized(std::move(stage), size);
+  const std::size_t size = std::exchange(scene.size, medium_size);
+  scene.scene = std::move(*scene.other);
+  scene.other = resized(std::move(kept), medium_size).scene;
+  return resized(std::move(scene), size);
 }
 
 std::vector<std::string> matter_refusals(const model::Scene& scene) {

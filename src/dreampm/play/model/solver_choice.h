@@ -1,4 +1,4 @@
-// Which solver moves a stage, and what each of them can do with it.
+// Which solver moves a scene, and what each of them can do with it.
 #pragma once
 #include <optional>
 #include <string>
@@ -14,11 +14,11 @@ namespace dreampm::play {
 const std::vector<std::string>& solver_names();
 bool is_projection(const model::Scene& scene);
 
-/// The stage by the other solver: as its file has it, or else of the same particles. Throws
-/// InputError where the stage cannot have another.
-PlayScene by_solver(PlayScene stage, SolverKind solver);
-/// Why a stage cannot be moved by the solver that does not move it now; empty: it can.
-std::string why_not_other(const PlayScene& stage);
+/// The scene by the other solver: as its file has it, or else of the same particles. Throws
+/// InputError where the scene cannot have another.
+PlayScene by_solver(PlayScene scene, SolverKind solver);
+/// Why a scene cannot be moved by the solver that does not move it now; empty: it can.
+std::string why_not_other(const PlayScene& scene);
 
 /// Why the solver of a scene cannot do with each kind of matters(); empty: it can.
 std::vector<std::string> matter_refusals(const model::Scene& scene);

@@ -8,6 +8,7 @@
 #include "dreampm/error.h"
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/play_model.h"
+#include "dreampm/play/model/save.h"
 #include "dreampm/play/model/solver_choice.h"
 #include "dreampm/play/report/report_looks.h"
 #include "dreampm/play/tools/arguments.h"
@@ -64,9 +65,27 @@ void compare(Playground& playground, const Action& a) {
   throw InputError(fmt::format("compare: no matter '{}'; there are{}", a.word(1), names));
 }
 
+/// Of the side, without what tools add to gravity.
+void save(const PlayModel& p, const std::filesystem::path& file, const SavedAs& as) {
+  const Vec3d gravity{p.settings.gravity_x, p.settings.gravity_y, p.settings.gravity_z};
+  save_scene(file, as, *p.simulation, gravity, p.tools);
+}
+
+/// Saves a finer scene and begins an estimate of its film, or the film itself.
+void make_film(PlayModel& p, const Action& a, bool goes_on) {
+  if (p.options.program.empty()) throw InputError(a.verb + ": no command dreampm that could make a film is known");
+  std::optional<Rendering>& rendering = p.films->rendering;
+  if (rendering && rendering->look().state == RenderStatus::State::running)
+    throw InputError(a.verb + ": a film is under way; render off ends it");
+  const SavedAs as = finer_scene(a);
+  rendering.reset();  // an estimate that was there takes its files along
+  save(p, a.word(0), as);
+  rendering.emplace(p.options.program, a.word(0), goes_on);
+}
+
 void render_or_end(PlayModel& p, const Action& a) {
   const bool off = is_off(a), leave = a.words.size() == 1 && a.words[0] == "leave";
-  if (!off && !leave) return p.render(a, true);
+  if (!off && !leave) return make_film(p, a, true);
   std::optional<Rendering>& rendering = p.films->rendering;
   if (!rendering) throw InputError("render: there is no film under way");
   if (off)
@@ -126,7 +145,7 @@ std::vector<Verb> verbs_of_time_and_matter() {
            [](PlayModel& p, const Action& a) { p.set(a.word(0), a.number(1)); }}
           .on_one_side(is_of_material),
       Verb{"look", "NAME", "a look of the report's material, as liquid, honey, stone or elastic, in its scenes",
-           [](PlayModel& p, const Action& a) { p.take_look(report_look(a.word(0))); }}
+           [](PlayModel& p, const Action& a) { p.set_report_look(report_look(a.word(0))); }}
           .on_one_side(always),
       {"step", "", "a single step", [](PlayModel& p, const Action&) { p.clock.single_step = true; }},
       Verb{"undo", "", "takes the last edit back", undo}.checked_by(can_undo),
@@ -141,11 +160,14 @@ std::vector<Verb> verbs_of_time_and_matter() {
 std::vector<Verb> verbs_of_files() {
   return {
       Verb{"save", "FILE.yaml", "writes a scene that `dreampm make` runs, with the particles beside it",
-           [](PlayModel& p, const Action& a) { p.save(a.word(0)); }}
+           [](PlayModel& p, const Action& a) {
+             save(p, a.word(0), {});
+             p.say(fmt::format("saved {}: dreampm make runs it", std::filesystem::absolute(a.word(0)).string()));
+           }}
           .on_one_side(always),
       Verb{"estimate", "FILE.yaml [SECONDS [FROM TO FOV]]",
            "saves a scene of 8 times the particles, and says what its film will take",
-           [](PlayModel& p, const Action& a) { p.render(a, false); }}
+           [](PlayModel& p, const Action& a) { make_film(p, a, false); }}
           .unrecorded()
           .on_one_side(always),
       Verb{"render", "FILE.yaml [SECONDS [FROM TO FOV]] | off | leave",

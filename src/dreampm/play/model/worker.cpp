@@ -42,9 +42,9 @@ bool is_recorded(const Action& action) {
 
 }  // namespace
 
-Worker::Worker(PlayScene stage, const PlayOptions& options, Record record)
+Worker::Worker(PlayScene scene, const PlayOptions& options, Record record)
     : host_(std::make_unique<UninterruptedHost>(options.simulation.host ? *options.simulation.host : current_host())),
-      playground_(std::move(stage), with_host(options, *host_)),
+      playground_(std::move(scene), with_host(options, *host_)),
       record_(std::move(record)),
       threads_(playground_.threads()),
       isa_(playground_.isa()) {
@@ -73,6 +73,14 @@ std::uint64_t Worker::post(Action action) {
   }
   wake_.notify_one();
   return number;
+}
+
+void Worker::hold(bool holds) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (std::exchange(holds_, holds) == holds) return;
+  }
+  wake_.notify_one();
 }
 
 std::shared_ptr<const Frame> Worker::latest() const {
@@ -105,7 +113,7 @@ void Worker::do_posted(const std::deque<Action>& actions, std::string& lines) {
     if (!script_.empty() && is_recorded(action)) {
       if (passes(action)) continue;
       script_.clear();
-      playground_.tell("the record ends here: a hand goes on");
+      playground_.tell("the record ends here: you go on");
     }
     act(action, lines);
   }
@@ -164,15 +172,23 @@ void Worker::run() {
     while (true) {
       const auto began = WallClock::now();
       std::deque<Action> actions;
-      bool ends = false;
+      bool ends = false, holds = false;
       {
         const std::lock_guard lock(mutex_);
-        ends = ends_;
+        ends = ends_, holds = holds_;
         actions.swap(posted_);
         waits_ = false;
       }
       // What was asked for right before the end is done too.
       do_posted(actions, lines);
+      if (holds && !ends) {
+        write();
+        std::shared_ptr<const Frame> frame = playground_.frame();
+        std::unique_lock lock(mutex_);
+        latest_ = std::move(frame);
+        wake_.wait(lock, [&] { return ends_ || !holds_ || !posted_.empty(); });
+        continue;
+      }
       std::optional<int> counted;
       if (!script_.empty() && !ends) counted = replay(lines);
       if (ends) {

@@ -29,12 +29,15 @@ class Worker {
 
   /// Throws as Playground does. `record` gets the lines of each tick, and at last a comment
   /// with the hash of the world. What it throws ends the thread.
-  Worker(PlayScene stage, const PlayOptions& options, Record record = {});
+  Worker(PlayScene scene, const PlayOptions& options, Record record = {});
   ~Worker();
 
   /// The verb `replay FILE` plays a record again, until the user does something.
   /// To be done before the next tick, in the order of the calls; its number, counted from 1.
   std::uint64_t post(Action action);
+  /// Whether the world stands still, such as while a film of it waits for its encoder: actions are
+  /// done, and no tick. No record has it.
+  void hold(bool holds);
   /// What it looked like after the last tick. Never null.
   std::shared_ptr<const Frame> latest() const;
   /// Throws what ended the thread, if anything did.
@@ -67,7 +70,7 @@ class Worker {
   std::uint64_t numbers_ = 0;
   std::shared_ptr<const Frame> latest_;
   std::exception_ptr failure_;
-  bool ends_ = false;
+  bool ends_ = false, holds_ = false;
   std::thread thread_;
 };
 

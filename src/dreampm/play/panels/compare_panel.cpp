@@ -19,7 +19,7 @@ class ComparePanel final : public Panel {
     const Action on = compare_with(static_cast<std::size_t>(kind));
     if (ImGui::Button("Compare##start")) host.post(on);
     host.note_place(on.text());
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the same twice, under the same hands; key K");
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("the same twice, under the same tools; key K");
     if (!frame.other) return;
     for (const char* side : {"A", "B"}) {
       ImGui::SameLine();

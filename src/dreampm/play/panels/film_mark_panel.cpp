@@ -22,8 +22,9 @@ class FilmMarkPanel final : public Panel {
     ImDrawList& list = *ImGui::GetForegroundDrawList();
     const float line = ImGui::GetFontSize();
     const ImVec2 at{layout.left + 14 * scale, top};
-    const std::string text =
+    std::string text =
         fmt::format("{}:{:04.1f}", static_cast<int>(*facts.film_seconds) / 60, std::fmod(*facts.film_seconds, 60));
+    if (facts.film_waits) text += fmt::format(", slower: {:.1f} s wait for the encoder", facts.film_behind);
     list.AddRectFilled({at.x - 6 * scale, at.y - 4 * scale},
                        {at.x + 1.4f * line + ImGui::CalcTextSize(text.c_str()).x + 6 * scale, at.y + line + 4 * scale},
                        ImGui::GetColorU32(ImGuiCol_PopupBg, 0.8f), 5 * scale);

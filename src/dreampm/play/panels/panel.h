@@ -20,6 +20,8 @@ struct DrawingFacts {
   std::string isa;
   std::string_view look;
   std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
+  double film_behind = 0;              ///< s of it that wait for the encoder
+  bool film_waits = false;             ///< whether the world stands still until there are fewer
 };
 
 /// In the pixels of ImGui.

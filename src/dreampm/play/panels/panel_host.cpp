@@ -3,7 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "dreampm/base/file.h"
+#include <filesystem>
+
 #include "dreampm/error.h"
 #include "dreampm/play/model/matter.h"
 #include "dreampm/play/model/open_file.h"
@@ -56,9 +57,14 @@ void PanelHost::open_file(const std::string& file) {
   }
 }
 
-void PanelHost::toggle_film(const Frame& frame) {
-  post("film", {frame.film.empty() ? free_name(without_blanks(frame.story), ".mp4").string() : "off"});
+std::string PanelHost::free_film(const std::string& name) const {
+  for (int n = 1;; ++n)
+    if (std::string file = fmt::format("{}-{:03}.mp4", without_blanks(name), n);
+        !std::filesystem::exists(file) && !is_film(file))
+      return file;
 }
+
+void PanelHost::toggle_film(const Frame& frame) { post("film", {frame.film.empty() ? free_film(frame.story) : "off"}); }
 
 void PanelHost::tell(std::string what, bool is_error) {
   if (!notes.empty() && notes.back().text == what) notes.pop_back();
@@ -66,10 +72,17 @@ void PanelHost::tell(std::string what, bool is_error) {
   if (notes.size() > kept_messages) notes.erase(notes.begin());
 }
 
-void PanelHost::take_message(const Frame& frame) {
-  if (frame.message_number == message_seen_) return;
-  message_seen_ = frame.message_number;
-  if (!frame.message.empty()) tell(frame.message, frame.message_is_error);
+void PanelHost::read_message(const Frame& frame) {
+  if (frame.message.empty()) return;
+  if (frame.message_number == std::exchange(message_seen_, frame.message_number)) {
+    // What it counts may have become more.
+    for (Note& note : notes)
+      if (note.number == frame.message_number && note.text != frame.message)
+        note.text = frame.message, note.until = ImGui::GetTime() + message_stands;
+    return;
+  }
+  tell(frame.message, frame.message_is_error);
+  notes.back().number = frame.message_number;
 }
 
 bool PanelHost::heading(const std::string& name, bool opens) {

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <utility>
@@ -25,7 +26,8 @@ struct Place {
 struct Note {
   std::string text;
   bool is_error;
-  double until;  ///< s: when it goes
+  double until;              ///< s: when it goes
+  std::uint64_t number = 0;  ///< of a message of the playground
 };
 
 /// As a line of text.
@@ -48,12 +50,14 @@ class PanelHost {
   void choose_matter(const Frame& frame, std::size_t kind);
   /// A scene, config, record or mesh in place of what is played; what cannot be opened is said.
   void open_file(const std::string& file);
+  /// The first of FILE-001.mp4, FILE-002.mp4 .. that there is not, and that no film is written to.
+  std::string free_film(const std::string& name) const;
   /// Begins a film of what is shown, or ends it.
   void toggle_film(const Frame& frame);
   /// Something for the messages.
   void tell(std::string what, bool is_error = false);
   /// Those that the frame has.
-  void take_message(const Frame& frame);
+  void read_message(const Frame& frame);
 
   /// A heading in the left panel, open at first; whether it is open.
   bool heading(const std::string& name, bool opens = true);
@@ -71,6 +75,8 @@ class PanelHost {
   std::vector<Note> notes;    ///< the latest ones, in their order
   bool edits = false;         ///< whether the control in use has changed matter or gravity
   float below_meters = 0;     ///< y of their lower edge
+  /// Whether a film is being written to a file that is not there yet.
+  std::function<bool(const std::string& file)> is_film = [](const std::string&) { return false; };
   // What another panel is to do.
   bool help = false;             ///< the page of keys
   bool asks_for_file = false;    ///< opens the list of files

@@ -52,7 +52,7 @@ Layout Panels::layout(float width, float height) const {
 void Panels::draw(const Frame& frame, Cursor& cursor, const DrawingFacts& facts, float width, float height) {
   const PanelView view{frame, cursor, facts, width, height, layout(width, height)};
   host.places.clear();
-  host.take_message(frame);
+  host.read_message(frame);
   if (view.layout.has_panels()) draw_left(view);
   for (const auto& panel : panels_)
     if (panel->where() == Panel::Where::over || (panel->where() == Panel::Where::beside && view.layout.has_panels()))

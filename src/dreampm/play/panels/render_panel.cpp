@@ -94,7 +94,7 @@ class RenderPanel final : public Panel {
     if (ImGui::Button("Cancel", {100 * scale, 0})) {
       // The estimate that was asked for, whether or not the frame knows of it.
       if (!film || film->state != State::running) host.post("render", {"off"});
-      put_away_ = scene_file_;
+      dismissed_ = scene_file_;
       close(true);
     }
     host.note_place("render cancel");
@@ -108,8 +108,8 @@ class RenderPanel final : public Panel {
     const bool in_dialog = is_open_ && film && film->scene == scene_file_;
     if (!film || film->state == State::estimated || in_dialog) return;
     const bool works = film->under_way();
-    if (works) put_away_.clear();
-    if (!works && put_away_ == film->scene) return;
+    if (works) dismissed_.clear();
+    if (!works && dismissed_ == film->scene) return;
     ImGui::SetNextWindowPos({layout.left + 10 * scale, height - layout.bottom - 48 * scale}, 0, {0, 1});
     ImGui::SetNextWindowBgAlpha(0.9f);
     ImGui::Begin("film", nullptr, dialog_flags | ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoFocusOnAppearing);
@@ -136,7 +136,7 @@ class RenderPanel final : public Panel {
         host.note_place("render open");
         ImGui::SameLine();
       }
-      if (ImGui::Button("Close")) put_away_ = film->scene;
+      if (ImGui::Button("Close")) dismissed_ = film->scene;
       host.note_place("render close");
     }
     ImGui::PopTextWrapPos();
@@ -145,8 +145,8 @@ class RenderPanel final : public Panel {
 
   bool is_open_ = false, was_paused_ = false;
   std::string scene_file_;
-  float seconds_ = 3;     ///< of the film
-  std::string put_away_;  ///< the scene of a film whose end was seen
+  float seconds_ = 3;      ///< of the film
+  std::string dismissed_;  ///< the scene of a film whose end was seen
 };
 
 }  // namespace

@@ -20,7 +20,7 @@ class SettingsPanel final : public Panel {
 
 }  // namespace
 
-std::unique_ptr<Panel> make_brush_panel() { return std::make_unique<SettingsPanel>("Hand"); }
+std::unique_ptr<Panel> make_brush_panel() { return std::make_unique<SettingsPanel>("Brush"); }
 std::unique_ptr<Panel> make_time_panel() { return std::make_unique<SettingsPanel>("Time"); }
 std::unique_ptr<Panel> make_picture_panel() { return std::make_unique<SettingsPanel>("Picture"); }
 

@@ -42,7 +42,7 @@ class Cursor {
 
   /// The tool that was clicked with where there was nothing for it, since the last call; else
   /// empty.
-  std::string_view take_missed() { return std::exchange(missed_, {}); }
+  std::string_view missed_tool() { return std::exchange(missed_, {}); }
 
   /// The ring, where the cursor is over the picture.
   const std::optional<CursorMark>& mark() const { return mark_; }

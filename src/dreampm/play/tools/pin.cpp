@@ -45,18 +45,18 @@ class Pin final : public ToolOf<Pin> {
   }
 
   /// Pins of a saved scene are fields there, and can be let go here.
-  void take(Scene& scene) override {
+  void load(Scene& scene) override {
     for (const model::ForceField& field : scene.model().fields)
       if (is_pin(field))
-        taken_.emplace_back(field.name, Stroke{field.vectors.at("point"), field.numbers["radius"],
-                                               field.vectors.at("velocity"), field.numbers["rate"]});
-    if (taken_.empty()) return;
+        loaded_.emplace_back(field.name, Stroke{field.vectors.at("point"), field.numbers["radius"],
+                                                field.vectors.at("velocity"), field.numbers["rate"]});
+    if (loaded_.empty()) return;
     model::Scene bare = scene.model();
     std::erase_if(bare.fields, is_pin);
     scene = Scene(std::move(bare), scene.file());
   }
-  void put(Simulation& simulation) override {
-    for (const auto& [name, stroke] : std::exchange(taken_, {})) simulation.set_brush(name, stroke);
+  void start(Simulation& simulation) override {
+    for (const auto& [name, stroke] : std::exchange(loaded_, {})) simulation.set_brush(name, stroke);
   }
   void save(const Simulation& simulation, model::Scene& scene) const override {
     for (const auto& [name, hold] : pins_of(simulation))
@@ -93,7 +93,7 @@ class Pin final : public ToolOf<Pin> {
     return all;
   }
 
-  Pins taken_;  ///< on their way from a scene to its simulation
+  Pins loaded_;  ///< on their way from a scene to its simulation
 };
 
 }  // namespace

@@ -62,10 +62,9 @@ class Tool {
   virtual void reset(PlayModel&) {}
   virtual bool holds_body() const { return false; }
   virtual void body_removed(std::string_view) {}
-  /// Takes out of a scene, before it begins, what the tool has there; and puts it into its
-  /// simulation.
-  virtual void take(Scene&) {}
-  virtual void put(Simulation&) {}
+  /// Moves what the tool has in a scene that is opened out of it, and then into its simulation.
+  virtual void load(Scene&) {}
+  virtual void start(Simulation&) {}
   /// Adds to a scene that is saved what the tool has in the simulation.
   virtual void save(const Simulation&, model::Scene&) const {}
   /// What is seen of it.

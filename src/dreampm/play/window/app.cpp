@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <deque>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -29,8 +28,7 @@
 #include "dreampm/play/tools/drop.h"
 #include "dreampm/play/window/app.h"
 #include "dreampm/play/window/app_keys.h"
-#include "dreampm/play/window/last_seconds.h"
-#include "dreampm/play/window/recorder.h"
+#include "dreampm/play/window/picture_films.h"
 #include "dreampm/play/window/view.h"
 
 namespace dreampm::play {
@@ -93,10 +91,7 @@ struct App::Impl {
   RgbImage seen();
   /// What was drawn, into the film that the frame asks for, if it does.
   void film(const Frame& frame, double time);
-  void end_film();
-  /// A film of the last seconds begins to be written, beside what goes on.
-  void save_last(const Frame& frame);
-  /// Draws some of it, as the camera stands now, for a part of a picture's time.
+  /// A film of the last seconds, as the camera stands now, goes on.
   void go_on_with_last();
   /// The sides of a frame into their framebuffers; with the ring of the brush, where there
   /// is one.
@@ -115,7 +110,8 @@ struct App::Impl {
   /// at that place of the picture under it.
   void drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y);
   KeyTarget keys() {
-    return {post, cursor, panels, wants_picture, [this](const Frame& f) { save_last(f); }};
+    return {post, cursor, panels, wants_picture,
+            [this](const Frame& f) { films.save_last(panels.host.free_film(f.story + "-last")); }};
   }
 
   Cursor::Post post;
@@ -131,15 +127,7 @@ struct App::Impl {
   std::unique_ptr<gl::Framebuffer> second;  ///< the picture of side B; null while nothing is compared
   std::unique_ptr<gl::Framebuffer> whole;   ///< of pictures that are saved
   bool over_second = false;                 ///< whether the pointer is, or was when a drag began
-  std::unique_ptr<Recorder> recorder;
-  LastSeconds last;
-  struct Saving {
-    Recorder to;
-    std::deque<LastSeconds::Shown> shown;
-    std::size_t next = 0;
-  };
-  std::unique_ptr<Saving> saving;       ///< the last seconds
-  std::string failed_film;              ///< its file
+  PictureFilms films{[this](const std::string& text, bool is_error) { panels.host.tell(text, is_error); }};
   double last_time = -1, painted = -1;  ///< s, of the last input and picture
   double shown_for = 0;                 ///< s, of the picture before the last
   bool has_font = false, has_camera = false, dark = false, was_left = false, was_right = false, was_middle = false,
@@ -156,6 +144,7 @@ struct App::Impl {
 App::Impl::Impl(const Cursor::Post& post_, int threads, std::string isa, bool offscreen_)
     : post(post_), cursor([this](const Action& a) { return use_tool(a); }), panels(post_), offscreen(offscreen_) {
   panels.host.pictures = &pictures;
+  panels.host.is_film = [this](const std::string& file) { return films.is_in_use(file); };
   facts.threads = threads, facts.isa = std::move(isa);
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
@@ -262,11 +251,11 @@ void App::Impl::move_cursor(const Frame& frame, const Input& input) {
   button(input.right, was_right, Cursor::Button::right);
   button(input.middle, was_middle, Cursor::Button::middle);
   if (input.wheel != 0 && !over_panel) cursor.wheel(input.wheel);
-  if (const std::string_view missed = cursor.take_missed(); !missed.empty())
+  if (const std::string_view missed = cursor.missed_tool(); !missed.empty())
     panels.host.tell(fmt::format("{}: there is nothing under the pointer; a drag here turns the view", missed));
 }
 
-void App::take(const Frame& frame, const Input& input, int width, int height, float scale) {
+void App::update(const Frame& frame, const Input& input, int width, int height, float scale) {
   Impl& a = *impl_;
   a.set_look(frame, scale);
   a.feed_imgui(input, width, height);
@@ -286,7 +275,7 @@ void App::take(const Frame& frame, const Input& input, int width, int height, fl
 }
 
 void App::draw(const Frame& frame, const Input& input, int width, int height, float scale) {
-  take(frame, input, width, height, scale);
+  update(frame, input, width, height, scale);
   paint(frame, input, width, height);
 }
 
@@ -316,7 +305,7 @@ void App::paint(const Frame& frame, const Input& input, int width, int height) {
   if (!a.wants_picture) a.go_on_with_last();
 }
 
-void App::keep(std::shared_ptr<const Frame> frame) { impl_->last.keep(std::move(frame)); }
+void App::keep(std::shared_ptr<const Frame> frame) { impl_->films.keep(std::move(frame)); }
 
 void App::Impl::draw_sides(const Frame& frame, int width, int height, const std::optional<CursorMark>& mark) {
   fit(scene, width, height);
@@ -326,37 +315,12 @@ void App::Impl::draw_sides(const Frame& frame, int width, int height, const std:
   view.draw(frame.side_b(), cursor.seen_by(), mark, *second);
 }
 
-void App::Impl::save_last(const Frame& frame) {
-  if (saving || last.shown().empty()) return;
-  const std::filesystem::path file = free_name(without_blanks(frame.story) + "-last", ".mp4");
-  saving.reset(new Saving{{file, LastSeconds::fps}, last.shown()});
-}
-
 void App::Impl::go_on_with_last() {
-  if (!saving) return;
-  constexpr double part = 0.03;  // s
-  const auto began = std::chrono::steady_clock::now();
-  const std::string file = saving->to.file().string();
-  // A window does not wait for the encoder.
-  const auto goes_on = [&] { return seconds_since(began) < part && (offscreen || !saving->to.is_behind()); };
-  try {
-    for (; saving->next < saving->shown.size() && goes_on(); ++saving->next) {
-      const LastSeconds::Shown& one = saving->shown[saving->next];
-      // Where the pointer is now it was not then.
-      draw_sides(*one.frame, scene->width(), scene->height(), std::nullopt);
-      saving->to.add(seen(), one.time);
-    }
-    const double seconds = saving->to.seconds();
-    // The same words each time: they take one place among the messages.
-    if (saving->next < saving->shown.size()) return panels.host.tell("saving the last seconds");
-    saving->to.finish();
-    panels.host.tell(fmt::format("the last {:.1f} s are in {}", seconds, std::filesystem::absolute(file).string()));
-    info("wrote {}", file);
-  } catch (const std::exception& e) {
-    panels.host.tell(fmt::format("the last seconds were not saved: {}", e.what()), true);
-    warn("{}: {}", file, e.what());
-  }
-  saving.reset();
+  films.go_on_with_last([&](const Frame& shown) {
+    // Where the pointer is now it was not then.
+    draw_sides(shown, scene->width(), scene->height(), std::nullopt);
+    return seen();
+  });
 }
 
 RgbImage App::Impl::seen() {
@@ -370,43 +334,40 @@ RgbImage App::Impl::seen() {
 }
 
 void App::Impl::film(const Frame& frame, double time) {
+  // Nobody waits off the screen, where each picture belongs to the film.
+  if (offscreen) films.wait_for_room();
   try {
-    if (recorder && recorder->file() != frame.film) end_film();
-    if (frame.film != failed_film) failed_film.clear();
-    if (frame.film.empty() || !failed_film.empty()) return;
-    if (!recorder) {
-      // The window goes on where the encoder is slower than it.
-      const auto behind = offscreen ? Recorder::Behind::waits : Recorder::Behind::leaves_out;
-      recorder = std::make_unique<Recorder>(frame.film, frame.film_fps, behind);
-    }
-    recorder->add(seen(), time);
-    facts.film_seconds = recorder->seconds();
+    films.record(frame, time, [&] { return seen(); });
   } catch (const std::exception& e) {
-    recorder.reset(), facts.film_seconds.reset();
     if (offscreen) throw;
-    failed_film = frame.film;  // until the playground knows
     warn("no film: {}", e.what());
     panels.host.tell(fmt::format("no film: {}", e.what()), true);
     post({"film", {"off"}});
   }
-}
-
-void App::Impl::end_film() {
-  facts.film_seconds.reset();
-  if (const auto ended = std::move(recorder)) {
-    ended->finish();
-    info("wrote {}", ended->file().string());
-    std::string text = fmt::format("filmed {}", std::filesystem::absolute(ended->file()).string());
-    if (const long n = ended->left_out()) text += fmt::format("; {} pictures were left out: the encoder was behind", n);
-    panels.host.tell(text);
-  }
+  if (!offscreen) films.poll();
+  facts.film_seconds = films.seconds(), facts.film_behind = films.seconds_behind();
+  facts.film_waits = !offscreen && films.is_behind();
 }
 
 void App::choose_size(bool chooses) { impl_->chooses_size = chooses; }
 
 void App::show_panels(bool shown) { impl_->panels.shown = shown; }
 
-void App::end_film() { impl_->end_film(); }
+void App::finish_films() { impl_->films.finish(); }
+
+bool App::close_films(const Frame& frame) {
+  Impl& a = *impl_;
+  if (!frame.film.empty()) a.post({"film", {"off"}});
+  a.films.end();
+  a.go_on_with_last();
+  a.films.poll();
+  if (a.films.are_written()) return true;
+  // The same words each time: they take one place among the messages.
+  a.panels.host.tell("the window closes when its films are written");
+  return false;
+}
+
+bool App::is_film_behind() const { return !impl_->offscreen && impl_->films.is_behind(); }
 
 RgbImage App::view() { return impl_->seen(); }
 
@@ -418,7 +379,11 @@ bool App::may_close(const Frame& frame) { return impl_->panels.may_close(frame);
 
 bool App::asks_to_close() const { return impl_->panels.asks_to_close(); }
 
-double App::moves_until() const { return impl_->last_time + impl_->panels.moves_for(); }
+double App::moves_until() const {
+  // What becomes of films is said where nothing else happens, too.
+  constexpr double look_again = 1;
+  return impl_->last_time + std::max(impl_->panels.moves_for(), impl_->films.are_written() ? 0 : look_again);
+}
 
 void App::tell(const std::string& what, bool is_error) { impl_->panels.host.tell(what, is_error); }
 

@@ -38,8 +38,8 @@ class App {
 
   /// Takes the input into a window of that size, and lays its panels out. `scale`: of letters and
   /// panels.
-  void take(const Frame& frame, const Input& input, int width, int height, float scale);
-  /// Draws what was taken last.
+  void update(const Frame& frame, const Input& input, int width, int height, float scale);
+  /// Draws what was updated last.
   void paint(const Frame& frame, const Input& input, int width, int height);
   /// Both.
   void draw(const Frame& frame, const Input& input, int width, int height, float scale);
@@ -47,10 +47,15 @@ class App {
   void keep(std::shared_ptr<const Frame> frame);
   /// Whether panels are drawn; else the picture is as large as the window.
   void show_panels(bool shown);
-  /// Whether stages that are opened have fewer particles where the machine does not keep up.
+  /// Whether scenes that are opened have fewer particles where the machine does not keep up.
   void choose_size(bool chooses);
-  /// Ends a film that is being made of what is drawn. Throws what went wrong with it.
-  void end_film();
+  /// Ends the film that is being made of what is drawn, and waits until all films are written.
+  /// Throws what went wrong with them.
+  void finish_films();
+  /// The same for a window that closes, without waiting: whether they are. Until then it says so.
+  bool close_films(const Frame& frame);
+  /// Whether a film is so far behind that the world should wait for its encoder.
+  bool is_film_behind() const;
   /// The whole window as it was drawn last, panels included, where it is off the screen.
   RgbImage picture() const;
   /// The same without panels, but with the legend and the scale of the picture.

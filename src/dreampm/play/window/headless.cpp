@@ -32,27 +32,57 @@ class Drawer {
   Drawer(const HeadlessOptions& options, const Playground& playground)
       : options_(options), app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.isa(), true) {
     app_.show_panels(options.panels);
-    if (!options.screenshots.empty()) make_folder(options.screenshots);
   }
-  /// `writes`: as a picture, too, and not only into a film.
-  void draw(Playground& playground, int number, bool writes) {
+  /// Into a film where the frame asks for one, and into a picture, where a file is given.
+  void draw(Playground& playground, int number, const std::filesystem::path& file) {
     Input input;
     input.time = number / 60.0;
     const std::shared_ptr<const Frame> frame = playground.frame();
     // Panels that fit their content know its size from the picture before.
-    if (writes) app_.take(*frame, input, options_.width, options_.height, scale_);
+    if (!file.empty()) app_.update(*frame, input, options_.width, options_.height, scale_);
     app_.draw(*frame, input, options_.width, options_.height, scale_);
-    if (!writes) return;
-    write_png(options_.screenshots / fmt::format("frame-{:04}.png", number),
-              options_.panels ? app_.picture() : app_.view());
+    if (!file.empty()) write_png(file, options_.panels ? app_.picture() : app_.view());
   }
-  void end_film() { app_.end_film(); }
+  void end_film() { app_.finish_films(); }
 
  private:
   const HeadlessOptions& options_;
   const float scale_ = options_.ui_scale.value_or(scale_of_size(options_.width, options_.height));
   gl::HeadlessContext context_;
   App app_;
+};
+
+/// Where pictures go: to many files of a folder, or to one, of the last frame.
+class Screenshots {
+ public:
+  /// Throws InputError for what cannot be written.
+  explicit Screenshots(const HeadlessOptions& options) : options_(options) {
+    const std::filesystem::path& to = options.screenshots;
+    if (to.empty()) return;
+    is_one_ = to.extension() == ".png" && !std::filesystem::is_directory(to);
+    for (const std::string_view ending : {".jpg", ".jpeg", ".exr", ".bmp", ".tif", ".tiff", ".webp", ".gif"})
+      if (to.extension() == ending)
+        throw InputError(fmt::format(
+            "--screenshot is {}: must be a file that ends in .png, or a folder; pictures are PNG files", to.string()));
+    if (!is_one_)
+      make_folder(to);
+    else if (options.every != 1)
+      throw InputError(fmt::format("--every {} needs a folder, and --screenshot {} is one picture, of the last frame",
+                                   options.every, to.string()));
+    else
+      check_replaceable(to);
+  }
+  /// The file of that drawn frame; empty: it has none.
+  std::filesystem::path file(int number) const {
+    if (options_.screenshots.empty() || is_one_ || number % options_.every != 0) return {};
+    return options_.screenshots / fmt::format("frame-{:04}.png", number);
+  }
+  /// The one file; empty: there is none.
+  std::filesystem::path last() const { return is_one_ ? options_.screenshots : std::filesystem::path(); }
+
+ private:
+  const HeadlessOptions& options_;
+  bool is_one_ = false;
 };
 
 /// Drawn frames that random actions stay at a scene, and from one of them to the next.
@@ -101,21 +131,23 @@ void wait_for_film(Playground& playground) {
 
 }  // namespace
 
-std::uint64_t play_headless(PlayScene stage, const HeadlessOptions& options) {
+std::uint64_t play_headless(PlayScene scene, const HeadlessOptions& options) {
   // What is drawn does not depend on how fast the machine is.
   PlayOptions play = options.play;
   play.step_seconds = 0;
-  Playground playground(std::move(stage), play);
+  Playground playground(std::move(scene), play);
+  const Screenshots screenshots(options);
   std::optional<Drawer> drawer;
   int drawn = 0;
   const auto tick = [&](const Playground::Limit& limit) {
     if (interrupted()) throw Interrupted("interrupted");
     playground.tick(limit);
     ++drawn;
-    const bool writes = !options.screenshots.empty() && drawn % options.every == 0, films = playground.is_filmed();
-    if (!drawer && (writes || films)) drawer.emplace(options, playground);
-    if (drawer && !films) drawer->end_film();
-    if (writes || films) drawer->draw(playground, drawn, writes);
+    const std::filesystem::path file = screenshots.file(drawn);
+    const bool draws = !file.empty() || playground.is_filmed();
+    if (!drawer && draws) drawer.emplace(options, playground);
+    if (drawer && !playground.is_filmed()) drawer->end_film();
+    if (draws) drawer->draw(playground, drawn, file);
   };
   if (!options.script.empty()) {
     std::istringstream lines(read_file(options.script));
@@ -154,6 +186,12 @@ std::uint64_t play_headless(PlayScene stage, const HeadlessOptions& options) {
     tick({});
   }
   if (drawer) drawer->end_film();
+  if (const std::filesystem::path file = screenshots.last(); !file.empty()) {
+    // The last frame is in its film already.
+    if (playground.is_filmed()) playground.act({"film", {"off"}});
+    if (!drawer) drawer.emplace(options, playground);
+    drawer->draw(playground, drawn, file);
+  }
   if (const std::string lost = playground.frame()->lost; !lost.empty()) info("{}", lost);
   wait_for_film(playground);
   return playground.hash();

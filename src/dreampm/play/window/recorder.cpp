@@ -11,9 +11,6 @@
 namespace dreampm::play {
 namespace {
 
-/// Pictures that may wait for the encoder.
-constexpr std::size_t most_waiting = 8;
-
 /// In the middle of one of that size, black around it.
 RgbImage fitted(const RgbImage& picture, int width, int height) {
   RgbImage out(width, height);
@@ -26,8 +23,7 @@ RgbImage fitted(const RgbImage& picture, int width, int height) {
 
 }  // namespace
 
-Recorder::Recorder(std::filesystem::path file, double fps, Behind behind, Encode encode)
-    : file_(std::move(file)), fps_(fps), behind_(behind) {
+Recorder::Recorder(std::filesystem::path file, double fps, Encode encode) : file_(std::move(file)), fps_(fps) {
   thread_ = std::thread([this, encode = std::move(encode)] {
     try {
       encode([&] { return next(); }, file_, {.fps = fps_, .quality = 18, .quick = true});
@@ -42,10 +38,11 @@ Recorder::Recorder(std::filesystem::path file, double fps, Behind behind, Encode
 }
 
 Recorder::~Recorder() {
+  const bool was_thrown = is_thrown_;
   try {
     finish();
   } catch (const std::exception& e) {
-    warn("{}: the film failed while it ended: {}", file_.string(), e.what());
+    if (!was_thrown) warn("{}: the film failed while it ended: {}", file_.string(), e.what());
   }
 }
 
@@ -58,22 +55,35 @@ void Recorder::add(const RgbImage& picture, double time) {
   began_ += std::max(0.0, time - last_time_ - longest_stand);
   last_time_ = time;
   const long due = std::lround((time - began_) * fps_);
-  if (frames_ > 0 && frames_ < due) push(last_, due - frames_);
-  if (frames_ <= due && !push(now, 1)) ++left_out_;
+  if (frames_ > 0 && frames_ < due) repeat(due - frames_);
+  last_is_pushed_ = frames_ <= due;
+  if (last_is_pushed_) push(now);
   last_ = std::move(now);
 }
 
-bool Recorder::push(const RgbImage& picture, long frames) {
-  std::unique_lock lock(mutex_);
-  frames_ += frames;
-  if (behind_ == Behind::waits) wake_.wait(lock, [&] { return stopped_ || waiting_.size() < most_waiting; });
-  const bool has_room = waiting_.size() < most_waiting;
-  if (has_room)
-    waiting_.push_back({picture, frames});
-  else
-    waiting_.back().frames += frames;
+bool Recorder::is_full() const {
+  const std::size_t bytes = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) * 3;
+  const std::size_t most = bytes == 0 ? most_waiting : std::clamp(most_bytes / bytes, std::size_t{4}, most_waiting);
+  // One that stands on may come before a new one.
+  return waiting_.size() + 2 > most;
+}
+
+void Recorder::push(const RgbImage& picture) {
+  wait_for_room();
+  const std::lock_guard lock(mutex_);
+  ++frames_;
+  waiting_.push_back({picture, 1});
   wake_.notify_all();
-  return has_room;
+}
+
+void Recorder::repeat(long frames) {
+  const std::lock_guard lock(mutex_);
+  frames_ += frames;
+  if (last_is_pushed_ && !waiting_.empty())
+    waiting_.back().frames += frames;
+  else
+    waiting_.push_back({last_, frames});
+  wake_.notify_all();
 }
 
 /// For the encoder, on its thread.
@@ -89,22 +99,45 @@ std::optional<RgbImage> Recorder::next() {
   return picture;
 }
 
-bool Recorder::is_behind() const {
+bool Recorder::has_room() const {
   const std::lock_guard lock(mutex_);
-  return !stopped_ && waiting_.size() >= most_waiting;
+  return stopped_ || !is_full();
+}
+
+void Recorder::wait_for_room() {
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [&] { return stopped_ || !is_full(); });
+}
+
+double Recorder::behind() const {
+  const std::lock_guard lock(mutex_);
+  long frames = 0;
+  for (const Shown& one : waiting_) frames += one.frames;
+  return static_cast<double>(frames) / fps_;
 }
 
 void Recorder::check() {
   const std::lock_guard lock(mutex_);
-  if (failure_) std::rethrow_exception(failure_);
+  if (!failure_) return;
+  is_thrown_ = true;
+  std::rethrow_exception(failure_);
 }
 
-void Recorder::finish() {
+void Recorder::end() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
   wake_.notify_all();
+}
+
+bool Recorder::is_done() const {
+  const std::lock_guard lock(mutex_);
+  return stopped_;
+}
+
+void Recorder::finish() {
+  end();
   if (thread_.joinable()) thread_.join();
   check();
 }

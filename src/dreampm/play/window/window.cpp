@@ -200,15 +200,17 @@ constexpr double look_every = 0.1;
 
 /// Until the window is closed.
 void show(Window& window, Worker& worker, App& app) {
-  bool asked = false;
+  bool asked = false, closes = false;
   PicturePace pace;
   while (!interrupted()) {
     worker.check();
+    worker.hold(app.is_film_behind());
     if (window.closes()) asked = true, window.stay();
     if (asked) {
-      if (app.may_close(*worker.latest())) return;
+      closes = closes || app.may_close(*worker.latest());
       asked = app.asks_to_close();
     }
+    if (closes && app.close_films(*worker.latest())) return;
     int width = 0, height = 0;
     window.size(width, height);
     if (width < 1 || height < 1) {  // minimised
@@ -216,14 +218,14 @@ void show(Window& window, Worker& worker, App& app) {
       continue;  // what came in is kept
     }
     const std::vector<Input> inputs = window.take_input();
-    const bool touched = window.was_touched() || asked;
+    const bool touched = window.was_touched() || asked || closes;
     const std::shared_ptr<const Frame> frame = worker.latest();
     app.keep(frame);
     const float scale = window.scale(width, height);
     const bool draws = pace.is_due(*frame, inputs.back().time, touched, app.moves_until());
     // What the user does goes to the solver at once.
     if (draws || touched)
-      for (const Input& input : inputs) app.take(*frame, input, width, height, scale);
+      for (const Input& input : inputs) app.update(*frame, input, width, height, scale);
     if (draws) {
       app.paint(*frame, inputs.back(), width, height);
       window.swap();
@@ -237,7 +239,7 @@ void show(Window& window, Worker& worker, App& app) {
 
 }  // namespace
 
-void play_in_window(PlayScene stage, const WindowOptions& options) {
+void play_in_window(PlayScene scene, const WindowOptions& options) {
   const Glfw glfw;
   Window window(options.width, options.height, options.fits_screen, options.ui_scale);
   std::ofstream record;
@@ -251,8 +253,8 @@ void play_in_window(PlayScene stage, const WindowOptions& options) {
                                    std::generic_category().message(errno)));
     };
   }
-  if (write) write(fmt::format("# dreampm {}\n{}\n", version, Action{"plays", {stage.name}}.text()));
-  Worker worker(std::move(stage), options.play, write);
+  if (write) write(fmt::format("# dreampm {}\n{}\n", version, Action{"plays", {scene.name}}.text()));
+  Worker worker(std::move(scene), options.play, write);
   App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
   app.choose_size(options.particles.empty());
   if (!options.particles.empty() && options.particles != size_names()[1]) worker.post({"size", {options.particles}});

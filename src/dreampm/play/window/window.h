@@ -19,6 +19,6 @@ struct WindowOptions {
 
 /// Opens a window and plays until it is closed. Throws RunError where there is no display or no
 /// OpenGL 3.3, saying how to play without.
-void play_in_window(PlayScene stage, const WindowOptions& options);
+void play_in_window(PlayScene scene, const WindowOptions& options);
 
 }  // namespace dreampm::play

@@ -11,20 +11,20 @@
 
 #include "dreampm/gl/headless.h"
 #include "dreampm/play/window/app.h"
-#include "play/small_stage.h"
+#include "play/small_scene.h"
 
 namespace dreampm::play::test {
 
 /// What it posts is kept, and not done: each click
 /// meets the same frame.
-class Hand : public testing::Test {
+class AppFixture : public testing::Test {
  protected:
   /// As narrow as panels are shown in, and so high that nothing is scrolled away.
   static constexpr int width = 600, height = 2600;
 
   void SetUp() override {
     context.emplace();
-    playground.emplace(small_stage(), quiet_options());
+    playground.emplace(small_scene(), quiet_options());
     play(*playground, {"frames 12", "erase 0.1 0.1 0.1 0.02"});
     start();
   }
@@ -49,7 +49,7 @@ class Hand : public testing::Test {
   void draw(int times = 1) {
     for (int n = 0; n < times; ++n) {
       input.time += 1.0 / 60;
-      app->take(*playground->frame(), input, window_width, window_height, 1);
+      app->update(*playground->frame(), input, window_width, window_height, 1);
       input.pressed.clear(), input.repeated.clear(), input.released.clear(), input.text.clear();
       input.files.clear(), input.wheel = 0;
     }

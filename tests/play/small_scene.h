@@ -11,7 +11,7 @@
 
 namespace dreampm::play::test {
 
-inline PlayScene small_stage() {
+inline PlayScene small_scene() {
   return {"tank",
           parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
                       "time: {fps: 60}\nmaterials:\n  water: {type: newtonian, preset: water, max_compression: "
@@ -22,7 +22,7 @@ inline PlayScene small_stage() {
 }
 
 /// Water alone in the same tank, by large steps.
-inline PlayScene large_step_stage(const std::string& more = "") {
+inline PlayScene large_step_scene(const std::string& more = "") {
   return {"tank",
           parse_scene("dreampm: 1\nname: tank\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
                       "time: {fps: 60, seconds: 5, solver: projection}\nmaterials:\n  water: {type: newtonian, preset: "
