@@ -119,7 +119,7 @@ const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [
                    t.control("nothing", "anything", 0.5);
                  }};
 
-const Case trusting{"trusting", "a gate that nothing wrong was held against", "nowhere", true, [](Trial& t) {
+const Case trusting{"trusting", "a gate that nothing wrong was compared with", "nowhere", true, [](Trial& t) {
                       t.at_most("judged", 0, 1);
                       t.control("wrong", "judged", 2);
                       t.at_most("believed", 0, 1);

@@ -35,7 +35,7 @@ void run(Trial& t) {
           "beside colliders; which of the changes since does it is not known.",
           0.035);
   const Flow pulls = flow(t, 6, {"materials.water.tension=true", "materials.water.relaxation=10"});
-  t.control("water that pulls, anchored ten times as strongly, 6 s", clumps, pulls.clumps);
+  t.control("water that pulls, relaxed ten times as strongly, 6 s", clumps, pulls.clumps);
   t.control("no anchoring, 6 s", rows, flow(t, 6, {"materials.water.relaxation=0"}).rows);
 }
 

@@ -214,7 +214,7 @@ void run(Trial& t) {
       "every node gets it before each step. F is diagonal in the first, with shear and rotation in the others. All of "
       "them stay elastic, and a run in which one yields fails: snow and seed are clamped far out, sand has 100 kPa of "
       "cohesion, the viscoplastic solid 1 MPa of yield stress. Sand and the viscoplastic solid let go when they are "
-      "pulled apart by a tenth: they sway without swelling, and are anchored as ever.");
+      "pulled apart by a tenth: they sway without swelling, and are relaxed as ever.");
   const char *const cells_axis = "log2 of cells a side", *const error_axis = "log10 of the relative error";
   Plot known{"convergence", "Errors by resolution", cells_axis, error_axis, {}};
   Plot made_up{"manufactured", "Errors of manufactured solutions by resolution", cells_axis, error_axis, {}};

@@ -38,7 +38,7 @@ void tell_set_up(Trial& t) {
       "Chosen with commit c4adf5d; before, it was a lattice and v_ref = sqrt(2 g H), 1.8 instead of 3.8 m/s in the "
       "shallow tank, whose blows at 4 m/s then compressed the liquid: its lowest and its highest density missed their "
       "gates.");
-  t.chose("Pressed to its hydrostatic state at the start; the depth is held against that start.");
+  t.chose("Pressed to its hydrostatic state at the start; the depth is compared with that start.");
 }
 
 const char* const depth = "depth at rest after 50 s, change";
@@ -60,7 +60,7 @@ void violent(Trial& t) {
   const char* const clumps = "particles with a neighbor nearer than 1/4 spacing";
   t.at_most(clumps, s.clumps, 0.13, "%");
   // Points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %.
-  t.control("water that pulls, anchored ten times as strongly, 24 x 10 cells, 10 s", clumps,
+  t.control("water that pulls, relaxed ten times as strongly, 24 x 10 cells, 10 s", clumps,
             shake(t, {24, 24, 4}, 10, 10, {"materials.water.tension=true", "materials.water.relaxation=10"}).clumps);
   // The control needs no 50 s: without volume relaxation it swells from the start. LIQUID wants
   // more than 8 %.
