@@ -1,5 +1,6 @@
 // The block-sparse grid: blocks of 4^3 nodes, a sorted list and a lookup. Node coordinates are
-// integers; a block's are those of its first node divided by 4.
+// integers; a block's are those of its first node divided by 4. ARCHITECTURE.md, "The step", has a
+// drawing of blocks and stencils.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -58,10 +59,9 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
-/// Particles lie in blocks of their own, one node further on than those of the grid: the stencils
-/// of block b begin at this node or one of the next three along each axis, and before the next sort
-/// at most one before or after those. So they reach all nodes of the grid's blocks b and b + 1, and
-/// no others.
+/// The lowest node at which stencils of a block of particles begin, docs/images/blocks.svg: at it
+/// or one of the next three along each axis, and before the next sort at most one before or after
+/// those.
 constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
 
 /// The lexicographic order of blocks: x first, then y, then z.

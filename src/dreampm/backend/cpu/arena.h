@@ -1,5 +1,5 @@
 // Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can
-// work on it.
+// work on it. docs/images/blocks.svg, in ARCHITECTURE.md, is their drawing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,9 +11,8 @@
 
 namespace dreampm {
 
-/// An arena covers the grid nodes that particles of up to `arena_blocks` consecutive blocks along z
-/// can touch before the next sort: two by two of the grid's blocks along x and y, and one more than
-/// `arena_blocks` along z. Its nodes are counted from the first of these.
+/// The most blocks of particles, consecutive along z, that share an arena. Nodes of an arena are
+/// counted from its first, which is the first of the grid's block of the run's first block.
 inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
