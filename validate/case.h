@@ -109,7 +109,7 @@ class Trial {
   /// wrong for a control: the first counts.
   void set_up(std::string_view scene, std::string text);
   /// What was chosen for this case beside its scenes, and why.
-  void chose(std::string text) { set_ups.push_back({{}, std::move(text)}); }
+  void note_choice(std::string text) { set_ups.push_back({{}, std::move(text)}); }
   void attach(Attachment a) { attachments.push_back(std::move(a)); }
   void plot(Plot p) { plots.push_back(std::move(p)); }
   void cost(std::uint64_t steps) { particle_steps += steps; }

@@ -44,7 +44,7 @@ struct MaterialState {
   double poissons_ratio = 0;       ///< of small elastic strains [1]; 1/2 where volume alone resists
 };
 
-/// Which particles came in as a body, whatever became of them since.
+/// The particles that came in as a body, whatever has happened to them since.
 struct BodyState {
   std::string material;          ///< that it was made of
   std::uint32_t first_id = 0;    ///< its particles have the ids from this one on,

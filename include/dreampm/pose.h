@@ -1,4 +1,4 @@
-// Where a rigid shape stands, and how it moves.
+// Pose and twist: the place of a rigid shape, and how it moves.
 #pragma once
 #include <cmath>
 

@@ -14,7 +14,7 @@ namespace dreampm {
 
 class Simulation;
 
-/// What a ray meets first.
+/// The first surface that a ray meets.
 struct RayHit {
   double distance = 0;                ///< m, from its origin
   Vec3d point;                        ///< m

@@ -1,4 +1,4 @@
-// What a simulation reports: steps, frames, sums, names.
+// Reports of a simulation: steps, frames, sums, names.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace dreampm {
 
-/// What one step did.
+/// The result of one step.
 struct StepReport {
   std::uint64_t step = 0;       ///< steps so far, this one included
   double time = 0;              ///< s, after the step
@@ -48,14 +48,14 @@ struct Totals : ParticleCounts {
   Vec3d entered_momentum, removed_momentum;   ///< kg m/s
 };
 
-/// What a probe of the scene has measured so far.
+/// The series that a probe of the scene has measured so far.
 struct ProbeSeries {
   std::vector<std::string> columns;       ///< of a row
   std::vector<double> time;               ///< s, of each row; rises
   std::vector<std::vector<double>> rows;  ///< SI units; NaN: not defined then
 };
 
-/// What there is in a simulation, by name, in the order of its scene.
+/// The names of all objects of a simulation, in the order of its scene.
 struct Names {
   std::vector<std::string> materials;
   std::vector<std::string> bodies;     ///< of matter
@@ -66,7 +66,7 @@ struct Names {
   std::vector<std::string> brushes;  ///< that are down
 };
 
-/// What the length of steps goes by.
+/// The settings that decide how long steps are.
 struct Stepping {
   std::string_view solver;   ///< explicit or projection
   double cell = 0;           ///< m: edge of a cell of the grid

@@ -50,7 +50,8 @@ class Snapshot {
   std::shared_ptr<const Data> data_;
 };
 
-/// Which steps the force on a collider is the mean of: those of a call, or of the call before too.
+/// The steps over which the force on a collider is averaged: those of this call, or those of the
+/// call before too.
 enum class ForceMean { of_this_call, goes_on };
 
 /// A scene that runs in this program.
@@ -87,8 +88,8 @@ class Simulation {
   void advance_to(double time);
   /// Steps to the end of that many frames.
   void advance_frames(int count);
-  /// That many steps, at least one. Velocities are kept of the last one alone, which is faster than
-  /// as many calls of `step`.
+  /// Makes `count` steps, at least one. Only the velocities of the last step are kept, which makes
+  /// this faster than as many calls of `step`.
   StepReport advance_steps(int count, ForceMean mean = ForceMean::of_this_call);
 
   double time() const;          ///< s
@@ -174,8 +175,8 @@ class Simulation {
   double parameter(std::string_view material, std::string_view key) const;
   /// All of them, with units and ranges.
   std::vector<Parameter> parameters(std::string_view material) const;
-  /// What a material comes to as it stands; or, with other values of some of its parameters, as it
-  /// would be. Nothing is changed. Throws InputError for a key that the material has not.
+  /// Returns derived values of a material as it stands, or as it would be with other values of some
+  /// parameters. Changes nothing. Throws InputError for a key that the material does not have.
   MaterialState material(std::string_view name, std::span<const ParameterValue> with = {}) const;
   /// A material more, of which there is no particle yet. Without a look it has that of scenes which
   /// say none. Throws InputError for a name that the scene has, and for what `check` would not

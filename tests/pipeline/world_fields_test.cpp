@@ -120,7 +120,7 @@ World64 full_world() {
   w.rigid.resize(1), w.collision.resize(1);
   w.emitters.resize(1), w.emitters[0].name = "tap";
   w.sinks.resize(1), w.sinks[0].name = "drain";
-  w.viscous_stages = 3, w.keeping = 0.5, w.settings.sub_cycles = false;
+  w.viscous_stages = 3, w.kept_kinetic_energy = 0.5, w.settings.sub_cycles = false;
   fill_set(w.sets.emplace_back(), "water", "newtonian", true, state_columns<Newtonian>, 0);
   fill_set(w.sets.emplace_back(), "jelly", "elastic", false, state_columns<Elastic>, 10);
   w.particle_blocks = {{0, 0, 0}, {0, 0, 1}};
@@ -195,13 +195,13 @@ TEST_F(Saved, EveryMemberOfTheStateSurvivesACheckpoint) {
     if (m.name == "grid/blocks" || !m.use.saved) return;
     const World64 back = there_and_back(changed);
     EXPECT_EQ(state_hash(back), state_hash(changed)) << m.name;
-    EXPECT_EQ(back.keeping, changed.keeping) << m.name;
+    EXPECT_EQ(back.kept_kinetic_energy, changed.kept_kinetic_energy) << m.name;
   });
 }
 
 TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   World64 world = full_world();
-  world.viscous_stages = 0, world.keeping = 0;
+  world.viscous_stages = 0, world.kept_kinetic_energy = 0;
   world.sets.pop_back(), world.colliders.clear();
   world.sets[0].transfer = {};
   world.sets[0].carries_motion = false;

@@ -92,7 +92,7 @@ const Case misses{
     "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
       t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5);
       t.control("wrong", "too much", 3);
-      t.chose("What was chosen, and why.");
+      t.note_choice("What was chosen, and why.");
       t.set_up("scene", "of water");
       t.set_up("scene", "of honey, for a control");
       t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});

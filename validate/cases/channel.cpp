@@ -21,7 +21,7 @@ Flow flow(Trial& t, double seconds, const std::vector<std::string>& overrides = 
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Sheared by 22 /s. As long as particles were shifted by all second differences of the nodes' masses, those "
       "of chance too, they were driven together between overfull nodes: 28 % lay in clumps after 8 s.");
   const Flow flows = flow(t, 10);

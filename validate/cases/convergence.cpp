@@ -198,7 +198,7 @@ Curve in_logs(std::string name, const std::vector<double>& cells, const std::vec
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "Errors stand with their signs, and orders pair by pair beside that of a fit. The vortex lies at random points, "
       "whose unevenness the anchoring reads as pressure: nine draws at 64 cells gave decay rates 0.23 % apart "
       "(standard deviation) around an error of 0.01 %, and one draw alone once gave orders of 2.9 and 0.64 between "
@@ -209,7 +209,7 @@ void run(Trial& t) {
       "0.31 and 0.56 % with an order of 1.44: filled 1 % over rest density, the liquid then had 1 % less kinematic "
       "viscosity than the exact solution.",
       vortex_draws));
-  t.chose(
+  t.note_choice(
       "Manufactured solutions: the body force is P of the library's own law, differentiated by central differences; "
       "every node gets it before each step. F is diagonal in the first, with shear and rotation in the others. All of "
       "them stay elastic, and a run in which one yields fails: snow and seed are clamped far out, sand has 100 kPa of "

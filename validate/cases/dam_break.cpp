@@ -108,7 +108,7 @@ void add_experiment(Plot& plot, const Measured& measured) {
 void run_projection(Trial& t) {
   constexpr int draws = 5;
   const std::string mean = fmt::format(", mean of {} draws", draws);
-  t.chose(
+  t.note_choice(
       "Walls as in dam-break; 200 frames a second, which steps end at. The front is where a slab is half full: by the "
       "places of jittered particles its error of n^2 = 1 differs by half a per cent from draw to draw.");
   const auto by = [](std::vector<std::string> more = {}) {
@@ -158,11 +158,11 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Floor and back wall slip and have the skin friction of a smooth wall, and particles are jittered, both since "
       "commit c4adf5d. Before, the floor stuck, the back wall slipped, and particles lay on a lattice. Without skin "
       "friction n^2 = 1 runs too fast and misses its gate at a/16 (reported below with --full).");
-  t.chose("Hydrostatic pressure at the start, as the diaphragm holds the column.");
+  t.note_choice("Hydrostatic pressure at the start, as the diaphragm holds the column.");
   for (const int n2 : {1, 2}) {
     // The long series of n^2 = 2 read from figure 3 is reported too.
     const Measured measured(n2);

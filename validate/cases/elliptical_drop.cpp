@@ -55,7 +55,7 @@ Errors against(const Table& exact, const Axes& ours) {
 void run(Trial& t) {
   const Table exact = reference_table("elliptical_drop_monaghan1994.csv");
   const double end = exact.numbers("t").back();
-  t.chose("Semi-axes by second moments, against those of the disk of particles at the start.");
+  t.note_choice("Semi-axes by second moments, against those of the disk of particles at the start.");
   const Axes ours = axes(t, end);
   const Errors e = against(exact, ours);
   t.at_most("worst error of a semi-axis", e.axis, 0.02, "%");

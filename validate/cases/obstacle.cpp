@@ -137,8 +137,8 @@ void add_experiment(Plot& plot, const Table& heights) {
 void run_projection(Trial& t) {
   const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
-  t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
-  t.chose("50 frames a second, which steps end at: what samples ask for. P2 is the pressure of cells, reported.");
+  t.note_choice("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
+  t.note_choice("50 frames a second, which steps end at: what samples ask for. P2 is the pressure of cells, reported.");
   const auto run = [&](int cells, double end, std::vector<std::string> more = {},
                        const std::function<void(World<float>&)>& change = {}) {
     more.push_back("time.fps=50");
@@ -187,8 +187,8 @@ void run_projection(Trial& t) {
 void run(Trial& t) {
   const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
-  t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
-  t.chose(
+  t.note_choice("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
+  t.note_choice(
       "asflip since commit 1f196df; before, apic. Behind the box is what two sheets of water bring, over it and around "
       "it, as high as they climb the wall; in cells of 5 cm they are half a cell to two cells thin. There apic loses "
       "three tenths of the energy that falls in the first second, and one sixth in cells half as wide: too little "

@@ -90,7 +90,7 @@ double crest(const Swing& swing, double from, double to) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The liquid has p = K (1 - J) (gamma: linear), may pull and is not relaxed, as the reference says. The rigid "
       "mass is a stiff elastic box; 1.5 m/s^2 of gravity keep both together, and 30 % less of it starts the motion.");
   const Table exact = reference_table("piston_on_compressible_column.csv");

@@ -135,14 +135,14 @@ constexpr const char* let_go =
     "this tank: waves come back from its ends before the first crest.";
 
 void run(Trial& t) {
-  t.chose(fmt::format(let_go, "four"));
+  t.note_choice(fmt::format(let_go, "four"));
   judge(t, t.full() ? std::vector{6, 9} : std::vector{6}, false,
         {"rigid-heave", "Heave of a log of half the water's density", "time  [sqrt(a/g)]", "height / lift", {}});
 }
 
 void run_projection(Trial& t) {
-  t.chose(fmt::format(let_go, "eight"));
-  t.chose(
+  t.note_choice(fmt::format(let_go, "eight"));
+  t.note_choice(
       "The time to the first crest is a period too, which does not ask where the level is: half a millimeter more or "
       "less of that, 2 % of the lift, changes the time between passages by 3 %.");
   judge(t, t.full() ? std::vector{6, 9, 12} : std::vector{6, 9}, true,

@@ -80,7 +80,7 @@ Hit judge(Trial& t, const std::string& who, double gate, double end, const std::
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The body is a cube: its inertia is that of a ball, so that free rotation is exact. In doubles the volume of the "
       "water is not relaxed: that shifts particles, which changes their angular momentum by some millionths, with or "
       "without a body.");

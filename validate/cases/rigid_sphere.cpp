@@ -62,7 +62,7 @@ Curve sinks(std::string name, double speed) {
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "The ball's diameter is a third of the tube's; the speed is that between {} and {} m over the floor, in 0.3 m of "
       "liquid. Re = {:.2g}.",
       from, to, 2 * radius * sticking() * liquid / viscosity));
@@ -96,7 +96,7 @@ void run(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "The ball's diameter is a third of the tube's; the speed is that between {} and {} m over the floor, in 0.3 m of "
       "liquid. Viscosity is implicit: a step a frame.",
       from, to));

@@ -42,7 +42,7 @@ Curve parabola(std::string name, double distance) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Each run has a floor of its own, named in its row. Put down for 0.5 s under a damping of 40/s, then let go.");
   Plot plot{"slopes", "A block that slides under leaning gravity", "time  [s]", "distance  [m]", {}};
   const auto distance = [&](std::string name, const std::string& wall, double degrees, double want) {

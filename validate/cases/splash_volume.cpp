@@ -116,7 +116,7 @@ void still_pool(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose("The volume follows from the particles' places, 2 s after the impact, as in splash-volume.");
+  t.note_choice("The volume follows from the particles' places, 2 s after the impact, as in splash-volume.");
   std::vector<Fall> falls{{"slab of 2 cells from 0.2 m", 0.2, 0.04},
                           {"layer of 4 cells from 0.5 m", 0.5, 0.08},
                           {"layer of 8 cells from 0.5 m", 0.5, 0.16}};
@@ -149,16 +149,16 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The volume follows from the particles' places: in each column of 2 x 2 cells twice their mean height over the "
       "floor. The ledger's `volume`, a sum of V0 J, does not see it: water that swells in a splash and forgets its "
       "gaps has J near 1 in all of its particles, and presses as if at rest. So it stayed at 1.5 of its volume when "
       "what a surface reads was not believed, however thin the layer.");
-  t.chose(
+  t.note_choice(
       "The gate is 3 % at 2 s after the impact: a hundredth of it is compression, and the depth of a layer of 2 cells "
       "is known to a few hundredths of a cell. A fall of 0.5 m has thrown the layer apart to several times its volume "
       "half a second after the impact: it has 1 s to come down and as long to be at rest.");
-  t.chose(
+  t.note_choice(
       "The rain is 20 drops of 2 cells, places and speeds drawn from the library's own random numbers with seed 1. Its "
       "impact is that of the last drop.");
   std::vector<Fall> falls{{"slab of 2 cells from 0.2 m", 0.2, 0.04}, {"layer of 4 cells from 0.5 m", 0.5, 0.08}};

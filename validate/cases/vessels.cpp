@@ -166,15 +166,15 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Everyone draws boxes that end at walls and on each other: there is no edge where they meet, and nothing may "
       "pass. "
       "The tank is a shelf and three upright boxes between the sides of the scene's box. The cup is a cylinder minus a "
       "cylinder; bowl and funnel are meshes that are turned on a lathe, of 64 steps.");
-  t.chose(
+  t.note_choice(
       "Lost is what lies beyond the outer face of a wall, and what has gone into it by more than half a cell. The gate "
       "is 0: a vessel that loses a drop a minute is empty in an hour.");
-  t.chose(
+  t.note_choice(
       "What is round stands where no axis and no face lies on a node or the face of a cell. The holes of a control are "
       "a cell wide; for sand, which bridges that, three.");
   struct Matter {

@@ -32,13 +32,13 @@ Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::ve
 }
 
 void tell_set_up(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Jittered, not on a lattice: its rows would stay in step with the grid until the first blows. Sound is 10 v_ref, "
       "v_ref = sqrt(2 g (0.6 L + H)) being the largest speed that shaking at 0.6 g can give in a tank of length L. "
       "Chosen with commit c4adf5d; before, it was a lattice and v_ref = sqrt(2 g H), 1.8 instead of 3.8 m/s in the "
       "shallow tank, whose blows at 4 m/s then compressed the liquid: its lowest and its highest density missed their "
       "gates.");
-  t.chose("Pressed to its hydrostatic state at the start; the depth is compared with that start.");
+  t.note_choice("Pressed to its hydrostatic state at the start; the depth is compared with that start.");
 }
 
 const char* const depth = "depth at rest after 50 s, change";

@@ -1,4 +1,4 @@
-// What matter meets: colliders at rest, in a given motion, and rigid bodies.
+// Colliders, which matter meets: at rest, in a given motion, and rigid bodies.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,7 +21,7 @@ struct Spring {
 
 namespace model {
 
-/// What makes a collider a rigid body.
+/// The settings that make a collider a rigid body.
 struct Rigid {
   std::optional<double> density{};  ///< kg/m^3, 0.1 to 30000; or
   std::optional<double> mass{};     ///< kg, above 0

@@ -1,4 +1,4 @@
-// What a run writes, and how its matter is shown: files, surfaces, looks, camera, light, video.
+// Output of a run and appearance of its matter: files, surfaces, looks, camera, light, video.
 #pragma once
 #include <array>
 #include <map>
@@ -19,7 +19,7 @@ enum class SkyKind {
 
 namespace model {
 
-/// What `dreampm run` writes.
+/// The files that `dreampm run` writes.
 struct Output {
   std::string folder;                               ///< relative to the working folder; empty: out/NAME
   std::vector<std::string> attributes{"velocity"};  ///< of particle_attributes
@@ -104,15 +104,15 @@ struct Light {
 enum class Floor { tiles, none };
 enum class Basin { glass, none };
 
-/// What stands around the matter.
+/// The objects around the matter in a picture.
 struct SceneProps {
   Floor floor = Floor::tiles;
   Basin basin = Basin::glass;
   bool operator==(const SceneProps&) const = default;
 };
 
-/// What a picture leaves out, to look inside: the part of some things on that side of a plane to
-/// which its normal points.
+/// A cut, which shows the inside: pictures leave out the part of some objects on that side of a
+/// plane to which its normal points.
 struct Cut {
   Vec3d point{};                ///< m
   Vec3d normal{};               ///< of any length above 0

@@ -21,8 +21,8 @@
 
 namespace dreampm::model {
 
-/// Where a file says something, for messages that come later (a body outside the walls): 1-based;
-/// line 0: nowhere.
+/// A position in a file, for messages that come later (a body outside the walls): 1-based; line 0:
+/// none.
 struct Mark {
   int line = 0, column = 0;
 };

@@ -1,4 +1,4 @@
-// Where and when: the box that matter moves in, and the time that passes.
+// Space and time: the box in which matter moves, and the time that passes.
 #pragma once
 #include <algorithm>
 #include <array>

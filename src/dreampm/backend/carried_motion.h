@@ -7,7 +7,7 @@
 
 namespace dreampm {
 
-/// Whether a motion says no more than the particles of a world do: of solids it has their strain
+/// True if a motion says no more than the particles of a world do: of solids it has their strain
 /// too.
 template <class R>
 bool carries_motion(const World<R>& world) {
@@ -15,7 +15,8 @@ bool carries_motion(const World<R>& world) {
                      [](const auto& set) { return set.carries_motion && set.liquid; });
 }
 
-/// Of the particles of one set, in their order; velocities `less` so much [m/s].
+/// Copies velocities and gradients of the particles of one set, in their order; `less` is
+/// subtracted from velocities [m/s].
 template <class R>
 void take_carried_motion(const ParticleSet<R>& set, const Vec3<R>& less, typename Motion<R>::Set& m) {
   resize_for_overwrite(m.velocity, set.size());
@@ -29,7 +30,7 @@ void take_carried_motion(const ParticleSet<R>& set, const Vec3<R>& less, typenam
   });
 }
 
-/// Of all particles.
+/// Copies velocities and gradients of all particles.
 template <class R>
 void take_carried_motion(const World<R>& world, Motion<R>& motion) {
   motion.sets.resize(world.sets.size());

@@ -47,7 +47,7 @@ class ContactGaps {
   template <class R>
   void measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles);
 
-  /// Whether matter of that field of the grid has gaps.
+  /// True if matter of that field of the grid has gaps.
   template <class R>
   bool has(const World<R>& world, std::size_t field) const {
     return !near_blocks_.empty() && !world.holds_liquid(field);
@@ -58,7 +58,7 @@ class ContactGaps {
     const std::int32_t t = walls_of_.empty() ? -1 : walls_of_[block][static_cast<std::size_t>(side)];
     return t < 0 ? nullptr : &walls_[static_cast<std::size_t>(t)].gap;
   }
-  /// Where no matter is near [cells]: a gap that none closes within a step.
+  /// The gap where no matter is near [cells]: none closes it within a step.
   static constexpr float none = 1e6f;
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
@@ -107,7 +107,7 @@ class ContactGaps {
     std::array<SideGaps, 6> gap;
     std::array<std::uint8_t, 6> any{1, 1, 1, 1, 1, 1};  ///< whether any of a side may be less than `none`
   };
-  /// Those of one side, or of nothing; `slots` as in gaps_of_.
+  /// Returns the gaps of one side, or empty ones; `slots` as in gaps_of_.
   const SideGaps& gaps_at(std::int32_t slots, int side) const;
   bool any_at(std::int32_t slots, int side) const {
     return slots >= 0 && cell_gaps_[static_cast<std::size_t>(slots)].any[static_cast<std::size_t>(side)] != 0;

@@ -1,4 +1,5 @@
-// What every step does to all nodes of a block, over any lane type: momentum to velocity, and sums.
+// Loops over the nodes of a block in every step, over any lane type: momentum to velocity, and
+// sums.
 #pragma once
 #include <bit>
 #include <type_traits>
@@ -12,7 +13,7 @@ namespace dreampm {
 /// Masses of nodes below this count as nothing: a stencil's outermost weights.
 inline constexpr double least_mass = 1e-36;
 
-/// What the nodes of one block add up to.
+/// Sums over the nodes of one block.
 struct NodeSums {
   double mass = 0;      ///< kg
   Vec3d moment{};       ///< of mass times place within the block [kg cells]
@@ -78,7 +79,7 @@ inline Vec3d place_in_block(std::size_t n) {
   return {at[0][n], at[1][n], at[2][n]};
 }
 
-/// Whether all is zero in a block, as in many at the rim of the grid.
+/// True if all nodes of a block are zero, as in many blocks at the rim of the grid.
 template <class R>
 DM_FN bool is_empty(const Node<R>* nodes) {
   using Bits = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
@@ -104,7 +105,7 @@ inline constexpr PlanePlaces<R> plane_places;
 // `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, bits, mask, as
 // OneNode does for plain numbers.
 
-/// Of all lanes.
+/// Returns the sum over all lanes.
 template <class Row, class S>
 DM_FN ImpulseSum sum_of(const ImpulseSumOf<S>& impulses) {
   const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
@@ -188,7 +189,7 @@ DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& wall
   impulses += sum_of<Row>(given);
 }
 
-/// Of a plane's nodes from `n` on, with places from its first on.
+/// Returns the offsets of a plane's nodes from `n` on, from the plane's first node.
 template <class S, class Row>
 DM_FN Vec3<S> places_in_plane(int axis, int n) {
   const auto& at = plane_places<Scalar<S>>;

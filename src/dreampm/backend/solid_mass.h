@@ -1,4 +1,4 @@
-// Where the surface of a solid lies, by the mass of its nodes.
+// The surface of a solid, found from the mass of its nodes.
 #pragma once
 #include <array>
 #include <cstdlib>

@@ -36,7 +36,7 @@ class SurfaceContact {
   /// Instead, where the velocities of colliders alone have changed. Returns whether that was
   /// enough.
   bool set_velocities(const World<R>& world, const Obstacles& obstacles);
-  /// Whether it may change nodes of this grid block.
+  /// True if contact may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
@@ -83,7 +83,7 @@ class SurfaceContact {
     std::uint16_t rest;  ///< entries of the same point in a row, from this one on
     R w;
   };
-  /// What nodes ask of a point in each call, side by side for them.
+  /// The data of a point that nodes read in each call, side by side for them.
   struct ActingPoint {
     Vec3<R> normal;
     R area;  ///< [dx^2]
@@ -126,7 +126,7 @@ class SurfaceContact {
     std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
     std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
     std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
-    // Of its nodes, found anew in each call.
+    // State of its nodes, found anew in each call.
     bool idle = false;                                  ///< whether there is no matter at all
     bool has_matter = false;                            ///< whether there is matter at any point of its nodes
     bool counts = false;                                ///< whether any of those may change it, or matters to others
@@ -143,7 +143,8 @@ class SurfaceContact {
   /// Puts the points that there are aside.
   void keep_points(const BlockList& grid);
   void find_points(const World<R>& world, const Obstacles& obstacles);
-  /// Those of one block: from those put aside where it has them still, or found anew.
+  /// Finds the surface points of one block: those kept from before, where there are any, else new
+  /// ones.
   void find_points(const World<R>& world, const Obstacles& obstacles, PointBlock& point_block);
   void take_points(const PointBlock& known, PointBlock& point_block);
   void find_points(const World<R>& world, const std::vector<SurfacePoint>& surface, PointBlock& point_block);
@@ -192,7 +193,7 @@ class SurfaceContact {
   std::size_t velocities_at(std::size_t& first, std::size_t end, const Nodes<R>& nodes,
                             std::array<std::size_t, 4>& which, std::array<Node<R>, 4>& sums) const;
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
-  /// Of a point block whose iterations are done.
+  /// Ends the iterations of a point block: sets the impulse before its last one to the last one.
   void rest(const PointBlock& point_block);
   void solve_bodies();
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;
@@ -229,7 +230,8 @@ class SurfaceContact {
   std::vector<Run> runs_;               ///< by node block, 27 each at most
   std::vector<LiveNode> live_nodes_;    ///< as point_nodes_
   std::vector<LivePoint> live_points_;  ///< as node_points_
-  /// Of points in the last step [kg m/s], with a number beside that is 0: four at once are quick.
+  /// Impulses of points in the last step [kg m/s]; the fourth number is 0: loads of four at once
+  /// are quick.
   std::vector<Node<R>> impulse_changes_;
   /// The velocity of a collider at the place of a node in the stencil of its point [m/s]; empty
   /// while all colliders are at rest.

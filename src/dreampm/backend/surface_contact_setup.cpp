@@ -1,5 +1,5 @@
-// What contact with colliders knows of their surfaces before a step: its points, their nodes, and
-// the velocities of colliders there.
+// The setup of contact with colliders before a step: surface points, their nodes, and the
+// velocities of colliders there.
 #include <algorithm>
 #include <cmath>
 #include <variant>

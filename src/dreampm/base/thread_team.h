@@ -14,7 +14,7 @@ namespace dreampm {
 /// not start loops on threads of their own.
 class ThreadTeam {
  public:
-  /// What the threads of a team share.
+  /// The state that the threads of a team share.
   class TeamState;
   ThreadTeam(TeamState& state, std::size_t thread, std::size_t threads)
       : state_(state), parts_(std::min(threads, most_parts)), part_(thread % parts_) {}

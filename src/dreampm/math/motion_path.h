@@ -12,7 +12,8 @@ namespace dreampm {
 
 struct MotionPath {
   std::vector<PoseKey> keys;  ///< by time; before the first and after the last the shape stands still
-  /// Whether it comes to rest at every key (smoothstep), or goes in straight lines from key to key.
+  /// True if the motion comes to rest at every key (smoothstep); false if it is linear between
+  /// keys.
   bool smooth = false;
   Vec3d center{};    ///< m, in the shape as the scene gives it: about which it turns
   Vec3d velocity{};  ///< m/s, where there are no keys

@@ -8,7 +8,7 @@
 
 namespace dreampm {
 
-/// What a law gets of the grid in one step.
+/// The grid's data for a law in one step.
 template <class R>
 struct StrainIncrement {
   Mat3<R> gradient;  ///< dt grad v [1]
@@ -18,7 +18,7 @@ struct StrainIncrement {
   /// s/m: the time since the last volume relaxation over 300 dx; 0 in a step that does not. Times
   /// the law's pace [m/s] it is dt/tau, tau = 300 dx/c.
   Scalar<R> volume_relaxation;
-  // Of liquids, in a step that relaxes their volume:
+  // Members for liquids, in a step that relaxes their volume:
   R strain = R(Scalar<R>(0));          ///< |sym grad v| times the time since the last volume relaxation [1]
   R inside = R(Scalar<R>(1));          ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
   R surface_filled = R(Scalar<R>(1));  ///< factor of `volume` as if nodes at surfaces were full; at most 1
@@ -112,7 +112,7 @@ struct Dissipation {
   R relaxed = R(Scalar<R>(0));  ///< given up where J or gaps are drawn to the measured density
 };
 
-/// What a law returns.
+/// The result of a law.
 template <class R>
 struct StressResponse {
   Sym3<R> tau;                      ///< Kirchhoff stress J sigma [Pa]

@@ -58,7 +58,7 @@ DM_FN NodeRow<N> nodes_of(const LineSpline<N>& line) {
   return {{outer - line.slope, line.middle, outer + line.slope}};
 }
 
-/// Where a particle lies along such a line.
+/// The place of a particle along such a line.
 template <class R>
 struct LinePlace {
   R t;              ///< from the middle

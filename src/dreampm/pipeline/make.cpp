@@ -79,7 +79,7 @@ bool make_stages(const model::Scene& scene, const SceneSource& source, const Mak
   check_encoder();
   const auto lock = std::make_shared<RunLock>(options.folder);
   const model::Scene kept = with_kept_models(scene);
-  const std::string resolved = scene::emit_scene(kept);
+  const std::string resolved = scene::write_scene(kept);
   const fs::path scene_file = options.folder / "scene.yaml";
   if (fs::exists(scene_file))
     for (const std::string& change : changed_keys(read_file(scene_file), resolved)) info("changed: {}", change);

@@ -86,7 +86,7 @@ void write_run_scene(const model::Scene& scene, const fs::path& folder) {
     copy_model(path, folder / name);
     hashes.insert(name.parent_path().filename().string());
   }
-  const std::string text = scene::emit_scene(with_kept_models(scene));
+  const std::string text = scene::write_scene(with_kept_models(scene));
   if (!holds(folder / "scene.yaml", text)) replace_file_text(folder / "scene.yaml", text);
   remove_others(folder / models, hashes);
 }

@@ -20,7 +20,7 @@ struct FrameSums {
   ImpulseSum left;       ///< what left took along
   Entered entered;       ///< what emitters gave
   double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
+  PassEnergy lost;       ///< what the particles turned into heat; kinetic and kept_kinetic unused
   double transfer = 0;   ///< J, of StepSums
   double damping = 0;    ///< J that damping took
   double rounding = 0;   ///< N s, of StepSums

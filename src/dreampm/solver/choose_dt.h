@@ -9,7 +9,7 @@ namespace dreampm {
 template <class R>
 double frame_end(const World<R>& world);
 
-/// What a step leaves of its frame.
+/// The rest of a frame after a step.
 struct RestOfFrame {
   bool done;    ///< whether the step ends the frame
   double left;  ///< s: from the end of the step to that of the frame, or of the next frame where the step ends one
@@ -38,8 +38,8 @@ void choose_dt(World<R>& world, double node_speed, double left);
 template <class R>
 double longest_stable_dt(const World<R>& world, double node_speed);
 
-/// Whether the step to come, as it was chosen, is stable for matter at `speed` [m/s] too: by what
-/// the largest cfl of scenes allows.
+/// True if the coming step, as chosen, is stable for matter at `speed` [m/s] too, at the largest
+/// cfl of scenes.
 template <class R>
 bool step_suits(const World<R>& world, double speed);
 

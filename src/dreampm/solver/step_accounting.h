@@ -1,4 +1,5 @@
-// What a step did to mass, momentum and energy, added up beside the step and never read by it.
+// The accounting of a step: its changes of mass, momentum and energy, added up beside the step and
+// never read by it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -49,8 +50,8 @@ class StepAccounting {
   void sub_cycled(double heat);
   /// Before a sort: notes the momentum on the grid where matter may leave.
   void before_sort();
-  /// After g2p2g, while the world's clock and `keeping` are still those before the step: the sums
-  /// of the whole step. `grid`: as grid_update and the stages left it.
+  /// After g2p2g, while the world's clock and `kept_kinetic_energy` are still those before the
+  /// step: the sums of the whole step. `grid`: as grid_update and the stages left it.
   StepSums transferred(GridStats grid, const PassStats& pass);
 
  private:

@@ -29,8 +29,8 @@ struct alignas(4 * sizeof(R)) Node {
 template <class R>
 using Nodes = LargeVector<Node<R>>;
 
-/// What the sets share at a node, where there is matter of several kinds or a collider. It lies in
-/// the numbers of a Node, so that both go the same ways.
+/// The mixture: numbers of a node that the sets share, where there is matter of several kinds or a
+/// collider. They lie in the members of a Node, so that all code for nodes handles them too.
 namespace mixture {
 /// Fraction of the node's kernel that solids and colliders take [1].
 template <class N>
@@ -86,7 +86,7 @@ class BlockList {
   const std::vector<Vec3i>& all() const { return blocks_; }
   /// The index of that block, or `none`.
   std::int32_t find(const Vec3i& block) const;
-  /// Those of `first` and of the two that follow it along z.
+  /// Returns the indices of block `first` and of the two that follow it along z.
   std::array<std::int32_t, 3> find_three(const Vec3i& first) const;
   /// The index of the first block that is not before `block`; size() if there is none.
   std::size_t first_from(const Vec3i& block) const;
@@ -126,13 +126,13 @@ struct GridFields {
   Nodes<R> nodes;    ///< blocks.size() * 64
   Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
   Nodes<R> mixture;  ///< see namespace mixture; the same size where a scene needs it, else empty
-  /// Of `nodes` and of `solids`: momentum and mass of OldVelocityTerm (physics/particle.h), after
+  /// Momentum and mass of OldVelocityTerm (physics/particle.h) for `nodes` and for `solids`, after
   /// grid_update velocity; only for fields in which a set keeps its particles' velocities, else
   /// empty.
   std::array<Nodes<R>, 2> velocity_old;
-  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, without
-  /// viscosity, and that they do not hold; only where World::viscous_stages > 0, else empty, as
-  /// before the first pass: new matter is at rest.
+  /// The momentum that stress gives in the coming step, without viscosity, for `nodes` and for
+  /// `solids`, which do not contain it. Present only where World::viscous_stages > 0, else empty;
+  /// also empty before the first pass, as new matter is at rest.
   std::array<Nodes<R>, 2> stress;
 };
 

@@ -1,4 +1,4 @@
-// Where matter comes in, and where it is taken out.
+// Emitters and sinks, as the state of a World.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -62,7 +62,7 @@ struct Emitter {
   }
 };
 
-/// What takes matter out that comes into it, when particles are sorted: every few steps.
+/// A sink. It takes out matter inside it when particles are sorted: every few steps.
 struct Sink {
   std::string name;
   std::shared_ptr<const Region> shape;       ///< null for

@@ -69,7 +69,7 @@ std::size_t room_of(const World<R>& world, std::size_t index, std::size_t size) 
   return room;
 }
 
-/// As GridTopology takes them.
+/// Returns the cells with particles, in the form that GridTopology takes.
 template <class R>
 std::vector<std::uint64_t> cells_of(const World<R>& world) {
   std::vector<std::uint64_t> cells(world.particle_blocks.size(), world.drift > 0 ? ~std::uint64_t{0} : 0);
@@ -90,7 +90,7 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   parallel_for(seeds.size(), seeds_at_once, [&](std::size_t i) { places[i] = world.locate(seeds[i].position); });
   const std::vector<std::uint32_t> block = find_blocks(world, places);
 
-  // Of each block, first those that were there, then the new ones in their order.
+  // The order within a block: particles that were there first, then new ones in their order.
   const std::size_t blocks = world.particle_blocks.size();
   std::vector<std::uint32_t> start(blocks + 1, 0), next(blocks), at(seeds.size());
   for (const std::uint32_t b : block) ++start[b + 1];

@@ -105,15 +105,15 @@ struct World {
   std::vector<CollisionShape> collision;  ///< of each collider, where there are rigid bodies
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
-  double emitted_until = -1;  ///< s; emitters have given what they give until then
-  std::uint32_t next_id = 0;  ///< of the next particle that an emitter gives; 0 without emitters
-  double drift = 0;           ///< cells that any particle may have moved since the last sort
-  double wave_speed = 0;      ///< m/s, largest of the last pass
-  double viscosity = 0;       ///< m^2/s, largest kinematic viscosity of the last pass
-  double keeping = 0;         ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
-  std::uint64_t left = 0;     ///< particles that left through open walls, in all
-  double node_speed = 0;      ///< m/s, largest of this step's nodes; not state: every step finds it anew
-  double dt_before = 0;       ///< s, of the last step of a projection; 0 before the first
+  double emitted_until = -1;       ///< s; emitters have given what they give until then
+  std::uint32_t next_id = 0;       ///< of the next particle that an emitter gives; 0 without emitters
+  double drift = 0;                ///< cells that any particle may have moved since the last sort
+  double wave_speed = 0;           ///< m/s, largest of the last pass
+  double viscosity = 0;            ///< m^2/s, largest kinematic viscosity of the last pass
+  double kept_kinetic_energy = 0;  ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
+  std::uint64_t left = 0;          ///< particles that left through open walls, in all
+  double node_speed = 0;           ///< m/s, largest of this step's nodes; not state: every step finds it anew
+  double dt_before = 0;            ///< s, of the last step of a projection; 0 before the first
   /// Pa, of the cells of grid.blocks, a cell by its node of lowest coordinates; only of a
   /// projection, whose next solve begins from it.
   LargeVector<R> cell_pressure;
@@ -138,11 +138,11 @@ struct World {
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
     return liquid && solid;
   }
-  /// Whether liquids move in that field of the grid: then nothing else does.
+  /// True if that field of the grid is the liquids': then nothing else moves in it.
   bool holds_liquid(std::size_t field) const {
     return field == 0 && std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.liquid; });
   }
-  /// Which of the grid's fields a set moves in: 0 nodes, 1 solids.
+  /// Returns the field of the grid in which a set moves: 0 nodes, 1 solids.
   std::size_t field_of(const ParticleSet<R>& set) const { return needs_solid_field() && !set.liquid ? 1 : 0; }
   /// The largest share of own velocities that a set of the field keeps; 0 if none does.
   double kept_share(std::size_t field) const {
@@ -167,8 +167,8 @@ struct World {
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
     return 1;
   }
-  /// Whether the field's matter has several densities and some of it wants to know how densely it
-  /// lies, which the masses of nodes then do not show.
+  /// True if the field's matter has several densities and a law in it asks for the density around a
+  /// particle, which the masses of nodes then do not show.
   bool measures_by_volume(std::size_t field) const;
   /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how
   /// viscous they are.

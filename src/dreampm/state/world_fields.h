@@ -52,13 +52,13 @@ struct Always {
   }
 };
 
-/// What a list says about a member. `name` is also that of the member in a checkpoint.
+/// A list's entry for a member. `name` is also the member's name in a checkpoint.
 template <FieldUse of, class Needed = Always>
 struct Field {
   static constexpr FieldUse use = of;
   std::string_view name;
-  /// Whether the array has to be there: of a World for the grid's fields, of the ParticleSet for
-  /// columns.
+  /// Predicate: true if the array has to be there. It takes a World for the grid's fields, a
+  /// ParticleSet for columns.
   Needed needed{};
 };
 
@@ -90,7 +90,7 @@ auto fields_of(W& world) {
   using namespace field_use;
   auto& [step, frame, time, dt_next, dt_limiter, kept_for, viscous_stages, dx, origin, low, high, walls, periodic,
          gravity, gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters,
-         sinks, emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed, dt_before,
+         sinks, emitted_until, next_id, drift, wave_speed, viscosity, kept_kinetic_energy, left, node_speed, dt_before,
          cell_pressure] = world;
   auto& [solver, fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
@@ -121,7 +121,7 @@ auto fields_of(W& world) {
                     entry<state>("drift", drift),
                     entry<state>("wave_speed", wave_speed),
                     entry<state>("viscosity", viscosity),
-                    entry<sparse(reported)>("keeping", keeping),
+                    entry<sparse(reported)>("keeping", kept_kinetic_energy),
                     entry<state>("left", left),
                     entry<setup_and_state>("colliders", colliders),
                     entry<setup>("rigid", rigid),

@@ -43,10 +43,11 @@ struct LaneGroup {
   std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
 };
 
-/// Where the nodes of an arena lie in the grid.
+/// The place of an arena's nodes in the grid.
 struct ArenaPlace {
   int blocks;  ///< of the grid along z: one more than blocks of particles
-  /// Those of the 2 x 2 pencils along z; BlockList::none where no particle can come.
+  /// The grid's blocks in each of the 2 x 2 pencils along z; BlockList::none where no particle can
+  /// come.
   std::int32_t pencil[4][arena_blocks + 1];
   ArenaReach reach;
 
@@ -70,21 +71,22 @@ struct ArenaPlace {
         }
       }
   }
-  /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within
-  /// each block.
+  /// The pencil through which row (i, j) of the arena runs, and the number within each block of the
+  /// row's first node there.
   static constexpr int pencil_of(int i, int j) { return i / block_width * 2 + j / block_width; }
   static constexpr int first_in_block(int i, int j) { return node_index(i % block_width, j % block_width, 0); }
-  /// Those in reach along z.
+  /// The first block in reach along z, and the one after the last.
   int first() const { return reach.first ? 0 : 1; }
   int end() const { return reach.last ? blocks : blocks - 1; }
 };
 
 inline constexpr int node_numbers = 4;  ///< of a Node
 
-/// What particles gather: the splines along z of one block's rows. Each row has three rows of eight
-/// numbers, one for each part of a LineSpline by its middle node. The first is that of the nodes
-/// themselves; of the others the six between their ends mean something. Rows that are neighbors
-/// along one of the axes x and y, `beside`, lie side by side.
+/// Splines along z of the rows of one block, from which particles gather. Each row of nodes has
+/// three rows of eight numbers, one for each part of a LineSpline, by the spline's middle node. The
+/// first part is the nodes' values themselves; in the other two, only the six numbers between the
+/// ends are valid. `beside` is the axis, x or y, along which neighboring rows are adjacent in
+/// memory.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
@@ -95,9 +97,10 @@ struct BlockSplines {
   static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 
-/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row,
-/// that before its first among them, and each lies on a cache line of its own. So a node has two
-/// places, two apart, and its sum is in both together. All zero between passes.
+/// Sums of an arena, to which particles scatter four nodes along z at a time. Groups of four begin
+/// at every second node of a row, the first one a node before the row, and each group lies on a
+/// cache line of its own. A node is thus in two groups, two places apart, and its sum is that of
+/// both. All are zero between passes.
 struct ArenaSums {
   static constexpr int row_nodes = 2 * arena_depth;
   static constexpr int block_step = 2 * block_width;  ///< from where a block's row begins to the next block's

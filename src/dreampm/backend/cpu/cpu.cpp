@@ -27,14 +27,14 @@ struct Arena {
   ArenaSums out[2], velocity_old_out[2], stress_out[2], mixture_out;
 };
 
-/// Of all materials, those from outside of this tree too.
+/// The check covers all materials, also those from outside of this tree.
 template <class... M>
 constexpr bool columns_fit(MaterialList<M...>) {
   return ((state_columns<M> <= most_state_columns) && ...);
 }
 static_assert(columns_fit(Materials{}), "a material has more columns of state than BlockPass::state holds");
 
-/// What a block costs before its first particle, in particles: loading and storing the arena.
+/// The fixed cost of a block, in particles: that of loading and storing the arena.
 constexpr std::uint32_t block_work = 48;
 
 /// Arenas that passes borrow.
@@ -77,8 +77,8 @@ class Cpu final : public Backend<float> {
   void attach(const World<float>& world) override {
     obstacles_.forget();
     sets_.clear();
-    // What another world left in rows that a pass does not fit is multiplied by zero: it must be
-    // finite.
+    // Rows that a pass does not fit may hold numbers of another world; they are multiplied by zero,
+    // and so must be finite.
     arenas_.drop();
     refresh(world);
   }
@@ -141,7 +141,7 @@ class Cpu final : public Backend<float> {
   }
 
  private:
-  /// What a pass over the particles is for.
+  /// The task of a pass over the particles.
   enum class Task { step, viscosity, speed };
 
   struct SetPass {
@@ -158,13 +158,13 @@ class Cpu final : public Backend<float> {
     }
   };
 
-  /// What a pass found in one pencil of blocks.
+  /// The result of a pass in one pencil of blocks.
   struct PencilResult {
     PassStats stats;
     float speed2 = 0;  ///< of SpeedKernel [m^2/s^2]
   };
 
-  /// What the last pass since the last sort found about a block, for the next pass.
+  /// Facts about a block from the last pass since the last sort, for the next pass.
   struct BlockHistory {
     Extent extent;   ///< of its particles; unknown before the first pass, as their lane groups are
     int beside = 1;  ///< the axis along which its splines shall lie side by side
@@ -306,8 +306,8 @@ class Cpu final : public Backend<float> {
       const std::size_t f = s.pass.own_field;
       used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
-    // Where blocks follow each other in the grid's memory, the rows of all lie as those of the
-    // first.
+    // Rows of the first block; where blocks follow each other in the grid's memory, those of the
+    // others lie alike.
     std::int32_t rows[arena_rows];
     int row_count = 0;
     if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
@@ -410,7 +410,8 @@ class Cpu final : public Backend<float> {
     }
     return extent;
   }
-  /// What the particles of those blocks, which share an arena, reach by their extents.
+  /// Returns the rows in reach of the particles of those blocks, which share an arena, by the
+  /// particles' extents.
   ArenaReach reach_of(std::size_t first, std::size_t end) const {
     Extent all;
     ArenaReach reach;

@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// Where the particles of a block lie after a step.
+/// The bounds of the particles of a block after a step.
 struct BlockExtent {
   Extent extent;
   int wide[2] = {};  ///< vectors whose lanes begin in two rows along this axis, x or y, and in one along the other
@@ -72,8 +72,8 @@ using Kernel = void (*)(const BlockPass&, PassStats&, BlockExtent&);
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);
 
-/// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass
-/// than that takes.
+/// A kernel that adds the momentum of viscous stress to `out`; particles stay as they are. It reads
+/// only the members of BlockPass that this takes.
 using ViscousKernel = void (*)(const BlockPass&);
 
 /// Work that nothing but the arithmetic units limits: `rounds` rounds of 12 independent

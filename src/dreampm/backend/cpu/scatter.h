@@ -138,7 +138,7 @@ struct ScatterBuffer {
   StencilBatch stencils;
   ScatterTerms terms, before, mixture, stress;
 
-  /// Of the particles from `first` on, which lie at `u` now.
+  /// Scatters the particles from `first` on, which lie at `u` now.
   DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const P2GTerms<F>& s,
                  const Vec3<F> (&affine_moment)[3], const F& viscosity, const F& volume_ratio) {
     F t[3];

@@ -1,4 +1,4 @@
-// What the loops over one set of particles work with.
+// The data that loops over one set of particles work with.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace dreampm::reference {
 
-/// What particles have around them, by block of particles.
+/// The surroundings of particles, by block of particles.
 struct Surroundings {
   Obstacles obstacles;
   std::vector<StencilBlocks> blocks;  ///< of the grid, that the particles reach

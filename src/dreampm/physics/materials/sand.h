@@ -68,7 +68,7 @@ struct Sand {
   /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of
   /// their distance.
   static constexpr double most_gaps = 1;
-  /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
+  /// The tr e of the tip: grains that are pulled apart by a tenth do not touch.
   static constexpr double most_pulled = 0.1;
   /// Shear over which the volume is relaxed; over 1, drift is faster.
   static constexpr double relaxation_strain = 1.0 / 3;
@@ -145,7 +145,7 @@ struct Sand {
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.dissipation.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
-      // Of it, at the same stress, what volume relaxation did.
+      // The part of it, at the same stress, that volume relaxation did.
       r.dissipation.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
       r.dissipation.plastic = r.dissipation.plastic - r.dissipation.relaxed;
       return r;

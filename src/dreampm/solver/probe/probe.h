@@ -47,7 +47,7 @@ class Probe {
   virtual ~Probe() = default;
   /// Names of what sample returns, beside the time.
   virtual std::vector<std::string> columns() const = 0;
-  /// What sample reads.
+  /// Returns the fields that sample reads.
   virtual MatterFields fields() const = 0;
   /// Called after every step.
   virtual void accumulate(const StepSums&) {}

@@ -48,7 +48,7 @@ class BodyPressure final : public AddedOperator<R> {
   };
   /// The velocity of what it closes of a face for each component of a body's twist, times the part.
   Six column(const World<R>& world, std::uint32_t body, const typename CutCells<R>::ClosedFace& face);
-  /// Of each body its sum J x, and what it gains by it.
+  /// Computes for each body its sum J x, and the velocity that it gains by it.
   void sum_columns(const LargeVector<R>& x);
   /// Adds to the bodies' twists what they gain, `times` so much.
   void gain(World<R>& world, double times);

@@ -13,9 +13,10 @@ namespace dreampm {
 
 /// Numbers of grains in a liquid.
 struct GrainNumbers {
-  /// Of the volume of a heap at rest: grains. The rest are pores.
+  /// The volume fraction of grains in a heap at rest. The rest are pores.
   static constexpr double packing = 0.6;
-  /// Of a face or a cell at most, where grains are pressed together more than they can be.
+  /// The largest volume fraction in a face or a cell, where grains are pressed together more than
+  /// they can be.
   static constexpr double most_packing = 0.85;
   /// m, of a grain, where the material gives no `grain_size`.
   static constexpr double diameter = 1e-3;

@@ -30,7 +30,7 @@ struct PressureLevel {
   }
 };
 
-/// What is added to the matrix without being stored: symmetric, and not negative.
+/// An operator that is added to the matrix without being stored: symmetric, and not negative.
 template <class R>
 class AddedOperator {
  public:
@@ -77,8 +77,8 @@ class PressureSolver {
  private:
   struct Coarse {
     CellRows cells;
-    /// Of each row the rows of the finer level that it is made of: by (i * 2 + j) * 2 + half along
-    /// z.
+    /// For each row, the rows of the finer level of which it is made: by (i * 2 + j) * 2 + half
+    /// along z.
     std::vector<std::array<std::uint32_t, 8>> children;
   };
   /// Returns x . b of the level.
@@ -94,7 +94,7 @@ class PressureSolver {
   std::vector<PressureLevel<R>> levels_;
   std::vector<Coarse> coarse_;  ///< of levels_[l + 1]
   std::size_t depth_ = 0;       ///< levels in use
-  /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
+  /// For each row with unknowns of a level but the last, the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
   std::vector<std::uint32_t> parent_of_;  ///< the same by the numbers of rows, for one level at a time
   LargeVector<R> direction_, product_;

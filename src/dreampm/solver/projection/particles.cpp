@@ -217,7 +217,7 @@ FlowSpeeds flow_speeds(const World<R>& world) {
   FlowSpeeds flow;
   double fastest2 = 0;
   for (const ParticleSet<R>& set : world.sets) {
-    // What is no number is not less than what was there.
+    // A NaN compares as not less, and is not kept.
     const auto keep = [](double& most, double other) { most = other < most ? most : other; };
     keep(fastest2,
          parallel_reduce(set.size(), 0.0, [&](double& most, std::size_t p) { keep(most, speed2_of(set, p)); }, keep));

@@ -14,7 +14,7 @@ namespace dreampm {
 template <class R>
 void particles_to_grid(const World<R>& world, const ProjectionKernels<R>& kernels, MacGrid<R>& grid);
 
-/// What the particles' way through a step was like.
+/// Statistics of the particles' motion in a step.
 struct MoveStats {
   double fastest = 0;  ///< m/s
   double usual = 0;    ///< m/s, that all but 0.1 % keep

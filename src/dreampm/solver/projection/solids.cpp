@@ -21,7 +21,7 @@ constexpr int most_steps = 20000;
 /// The part of a cell's matter that liquid has to be, for solids there to be in it.
 constexpr double least_liquid = 0.25;
 
-/// Where solids are at all on a face, over the mass of a cell of liquid.
+/// The least mass of solids at a face that counts, over the mass of a cell of liquid.
 constexpr double least_solid_mass = 1e-6;
 
 /// Parts of a step, between which matter is pushed.
@@ -141,7 +141,7 @@ void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& l
           change = R(0);
           continue;
         }
-        // Where no pressure is, matter in one place has one velocity all the same.
+        // Matter in one place has one velocity, also where there is no pressure.
         const R now = grid.velocity[a][f];
         change = (is_known(now) ? now : grid.free[a][f]) - change;
         if (wet && grid.open[a][f] > R(0))
@@ -183,7 +183,7 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   // Nothing of the last run decides the next, so that restarts are exact.
   w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = 0;
   w.colliders = colliders;
-  // Those of bodies are of the middle of a step.
+  // Velocities of bodies are those in the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
   // Springs have acted on bodies.
   w.rigid = world.rigid, w.collision = world.collision;

@@ -11,7 +11,7 @@
 
 namespace dreampm {
 
-/// Whether any matter goes by explicit steps.
+/// True if any matter goes by explicit steps.
 template <class R>
 bool has_solids(const World<R>& world) {
   return !std::all_of(world.sets.begin(), world.sets.end(), is_projected<R>);
@@ -54,8 +54,8 @@ class SolidSteps {
   /// Returns their energies of motion.
   Kinetic run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
               const Pushes<R>& pushes, StepSums& sums);
-  /// Of the last run: energies and volume ratios of its particles by their ids, and velocities as
-  /// they are: those that particles carry have their push taken out.
+  /// Adds the results of the last run: energies and volume ratios of its particles by their ids,
+  /// and velocities as they are: those that particles carry have their push taken out.
   void add_state(const World<R>& world, Motion<R>& motion);
   /// `motion` shows velocities as they are: remembers how far they are from those that particles
   /// carry.

@@ -23,7 +23,7 @@ void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double
 
 using Walls = std::array<ImpulseSum, 6>;
 
-/// What is given to walls and colliders, by their numbers.
+/// The impulses on walls and colliders, by their numbers.
 struct Contacts {
   decltype(GridStats::colliders) colliders;
   Walls walls{};
@@ -42,7 +42,7 @@ struct JoinContacts {
   }
 };
 
-/// What viscosity did on walls, and on faces of colliders that hold the liquid.
+/// Adds the impulses of viscosity on walls, and on faces of colliders that hold the liquid.
 template <class R>
 void add_viscous_contact(const World<R>& world, const MacGrid<R>& grid, const Viscosity<R>& viscosity,
                          const StepScale& scale, GridStats& to) {

@@ -1,4 +1,4 @@
-// What a step of the projection did to momentum, energy and volume: read off its grid, for reports
+// The sums of a step of the projection: momentum, energy and volume, read off its grid, for reports
 // alone.
 #pragma once
 #include "dreampm/backend/backend.h"
@@ -8,7 +8,7 @@
 
 namespace dreampm {
 
-/// What a step's grid knows of its liquid.
+/// Constants that turn the values of a step's grid into sums.
 struct StepScale {
   double particle = 0;  ///< kg, of one of liquid
   double cell = 0;      ///< kg, of a cell of liquid
@@ -36,8 +36,9 @@ FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& sca
 template <class R>
 double excess_volume(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 
-/// Of the volume of liquid the part by which cells hold more than half too much: where thin sheets
-/// come to lie in others, faster than the density takes them apart. `rows`: those with liquid.
+/// Returns the volume fraction of the liquid by which cells are more than half too full: where thin
+/// sheets come to lie in others, faster than the density takes them apart. `rows`: those with
+/// liquid.
 template <class R>
 double crowding(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 

@@ -1,4 +1,4 @@
-// What the particles of a block take from the staggered grid, and where they go, over any lane
+// Loops in which the particles of a block take from the staggered grid and move, over any lane
 // type. The cells around the block are copied to where they lie close together.
 #pragma once
 #include "dreampm/solver/projection/kernels.h"
@@ -50,8 +50,8 @@ DM_FN void samples_around(const R* field, const std::int32_t (&number)[lanes], S
       Row::pairs(field + i * Near::along_x + j * Near::along_y, number, samples.at[i][j][0], samples.at[i][j][1]);
 }
 
-/// Of the particles that `unknown` names the values that look(place, values) finds, one after the
-/// other. `x`: their places in cells from the first of the window.
+/// Replaces the values of the particles in `unknown` by those that look(place, values) finds, one
+/// after the other. `x`: their places in cells from the first of the window.
 template <class S, class Row, int count, class Look>
 DM_FN void look_up(const Vec3<S>& x, unsigned unknown, S* const (&values)[count], const Look& look) {
   using R = Scalar<S>;
@@ -108,7 +108,7 @@ struct TakenSums {
   bool far = false;
 };
 
-/// What particles carry: along each axis the velocity [m/s], and its slopes [1/s].
+/// The motion that particles carry: along each axis the velocity [m/s], and its slopes [1/s].
 template <class S>
 struct Taken {
   S v[3];

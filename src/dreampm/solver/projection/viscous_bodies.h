@@ -20,7 +20,7 @@ class ViscousBodies {
   /// [kg/m^3]. `stiffness(axis, face)`: of its stresses; 0 where there are none.
   template <class Stiffness>
   void begin(const World<R>& world, const MacGrid<R>& grid, double density, const Stiffness& stiffness);
-  /// And the cells along whose surfaces liquid slips; ends what `begin` began.
+  /// Adds the cells along whose surfaces liquid slips; ends the work that `begin` began.
   void add_cells(const BodyPressure<R>& pressed, const SurfaceStress<R>& surfaces);
 
   // Vectors of the solve, one Six a body.
@@ -31,7 +31,7 @@ class ViscousBodies {
   void scatter(const std::vector<Six>& bodies, Faces& u) const;
   /// The same, added to what is there; and in `free` of open faces what they are then.
   void scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const;
-  /// What flows out of cells as bodies move.
+  /// Adds the flow out of cells that the motion of bodies causes.
   void add_flow(const std::vector<Six>& bodies, SurfaceStress<R>& surfaces) const;
   /// M V, M over the mass of a cell of liquid; 0 in locked components.
   void weigh(const std::vector<Six>& velocities, std::vector<Six>& out) const;
