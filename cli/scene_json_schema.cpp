@@ -179,7 +179,7 @@ class SchemaWriter {
     return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   }
 
-  bool overlay_ = false;  ///< whether keys are laid over others, so that none is required
+  bool overlay_ = false;  ///< true if keys are laid over others, so that none is required
   SchemaJson defs_ = SchemaJson::object();
 };
 

@@ -20,7 +20,7 @@ struct Parameter {
   double value = 0;         ///< NaN: the solver works it out
   double min = 0, max = 0;  ///< that a value may have, both included
   std::string_view about;   ///< what it is, in a line
-  bool log = false;         ///< whether it is natural to move it by factors
+  bool log = false;         ///< true if it is natural to move it by factors
   /// Words that may stand for a value, each with its number, as {"linear", 1}; false and true are 0
   /// and 1. Where `words_only`, no other value may be had.
   std::vector<std::pair<std::string_view, double>> words;
@@ -36,7 +36,7 @@ struct ParameterValue {
 /// A material as it stands.
 struct MaterialState {
   std::string_view type;           ///< newtonian, elastic, snow, ...
-  bool liquid = false;             ///< whether it has no shape of its own
+  bool liquid = false;             ///< true if it has no shape of its own
   double particle_mass = 0;        ///< kg
   double particle_volume = 0;      ///< m^3, at rest
   double sound_speed = 0;          ///< m/s, at rest

@@ -16,7 +16,7 @@ struct StepReport {
   double dt = 0;                ///< s, taken
   std::string_view limiter;     ///< what limited dt: speed, wave, viscosity, frame, user
   int viscous_stages = 0;       ///< stages of viscosity in the step; 0: explicit
-  bool frame_done = false;      ///< whether the step ended a frame
+  bool frame_done = false;      ///< true if the step ended a frame
   double max_speed = 0;         ///< m/s, of the grid
   double j_min = 1, j_max = 1;  ///< range of the volume ratio J over all particles
 };
@@ -73,7 +73,7 @@ struct Stepping {
   double cfl = 0;            ///< cells that sound or matter may cross in a step
   double dt_max = 0;         ///< s: the longest step that the scene allows; 1e30: any
   double fixed_dt = 0;       ///< s: of every step; 0: it is chosen for each
-  bool sub_cycles = false;   ///< whether steps may be longer than explicit viscosity allows
+  bool sub_cycles = false;   ///< true if steps may be longer than explicit viscosity allows
   int viscous_contacts = 0;  ///< kinds of contact that add to viscosity: with smooth walls, with solids
   int viscous_stages = 0;    ///< of the step to come; 0: its viscosity is explicit
 };

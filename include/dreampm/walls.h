@@ -34,7 +34,7 @@ inline constexpr std::array<std::string_view, 4> wall_type_names{"separate", "sl
 struct Wall {
   WallType type = WallType::separate;
   double friction = 0;         ///< Coulomb's coefficient, 0 to 100; of separate and slip
-  bool skin_friction = false;  ///< whether it slows liquids as a smooth wall with a boundary layer does
+  bool skin_friction = false;  ///< true if it slows liquids as a smooth wall with a boundary layer does
   bool operator==(const Wall&) const = default;
 };
 

@@ -27,7 +27,7 @@ struct Emitter {
   double start = 0;                 ///< s
   std::optional<double> stop{};     ///< s; absent: never
   std::int64_t pool = 0;            ///< particles that it may give, at least 1
-  bool recycle = false;             ///< whether the pool is what may be there at once, not in all
+  bool recycle = false;             ///< true if the pool is what may be there at once, not in all
   std::optional<Motion> motion{};   ///< of its shape; velocities are those in the shape
 };
 

@@ -66,7 +66,7 @@ struct NodeStep {
   R diffusion;  ///< dt/dx^2 [s/m^2]
   R dx;         ///< m
   R per_dt;     ///< dx/dt [m/s]
-  bool skin;    ///< whether a wall slows liquids by its boundary layer
+  bool skin;    ///< true if a wall slows liquids by its boundary layer
   // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces;
   // what is left of it acts on its own, for this part of the step. It is rare: a node with next to
   // nothing of a solid, a liquid that solves its own viscosity implicitly.

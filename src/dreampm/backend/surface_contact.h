@@ -66,8 +66,8 @@ class SurfaceContact {
     R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
     R surface_speed = R(0);          ///< along the normal, were its nodes to move with the collider [m/s]
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
-    bool limits = false;             ///< whether it limits another one
-    bool acts = false;               ///< whether its impulse may be other than 0 in this call
+    bool limits = false;             ///< true if it limits another one
+    bool acts = false;               ///< true if its impulse may be other than 0 in this call
     std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
     R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
   };
@@ -107,12 +107,12 @@ class SurfaceContact {
     Neighbors around;                              ///< the grid's blocks,
     std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, for periodic ones,
     std::array<std::uint32_t, 27> entries{};       ///< and how many nodes of points each of them has
-    bool has_matter = false;                       ///< whether there is matter at any of its points
-    bool acts = false;                             ///< whether any of them acts,
+    bool has_matter = false;                       ///< true if there is matter at any of its points
+    bool acts = false;                             ///< true if any of them acts,
     bool counts = false;                           ///< or limits another one
-    bool rests = false;                            ///< whether the velocities known of its points are 0
+    bool rests = false;                            ///< true if the velocities known of its points are 0
     std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
-    bool cleared = false;                          ///< whether its points are as without matter
+    bool cleared = false;                          ///< true if its points are as without matter
     int iterations = ColliderContact::iterations;  ///< of its points in each solve
   };
   /// A block with nodes in stencils of points.
@@ -127,10 +127,10 @@ class SurfaceContact {
     std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
     std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
     // State of its nodes, found anew in each call.
-    bool idle = false;                                  ///< whether there is no matter at all
-    bool has_matter = false;                            ///< whether there is matter at any point of its nodes
-    bool counts = false;                                ///< whether any of those may change it, or matters to others
-    bool moves = false;                                 ///< whether the collider of any of its points does
+    bool idle = false;                                  ///< true if there is no matter at all
+    bool has_matter = false;                            ///< true if there is matter at any point of its nodes
+    bool counts = false;                                ///< true if any of those may change it, or matters to others
+    bool moves = false;                                 ///< true if the collider of any of its points does
     R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
                                                         ///< relative to the colliders
     std::array<Node<R>, block_nodes> facing;            ///< sums over points: normal times area, and area [dx^2]
@@ -246,7 +246,7 @@ class SurfaceContact {
   std::vector<BodyPoint> body_points_;
   std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its center; as point_nodes_, or empty
   BodyCoupling bodies_;
-  bool any_moves_ = false;          ///< whether any collider does
+  bool any_moves_ = false;          ///< true if any collider does
   std::vector<bool> is_free_ball_;  ///< by collider: a rigid ball, which pressure cannot turn
   R max_speed2_ = R(0);             ///< of all node blocks
 };

@@ -71,7 +71,8 @@ class BrickGrid {
   /// The same at many places, to the same bits: place(axis, number) [voxels].
   template <class InVoxels>
   void samples(std::size_t count, const InVoxels& place, double* to) const;
-  /// Where the values grow at p [voxels], of length 1; up where they are the same all about.
+  /// Returns the direction in which values grow at p [voxels], of length 1; up where they are the
+  /// same all around.
   Vec3d direction(const Vec3d& p) const;
 
  private:

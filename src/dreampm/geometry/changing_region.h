@@ -10,7 +10,7 @@ namespace dreampm {
 class ChangingRegion {
  public:
   virtual ~ChangingRegion() = default;
-  /// What it is at a time [s].
+  /// Returns the region at a time [s].
   virtual std::shared_ptr<const Region> at(double time) const = 0;
   /// The velocity [m/s] of its surface nearest to `p` [m] at a time [s].
   virtual Vec3d velocity(const Vec3d& p, double time) const = 0;

@@ -32,7 +32,7 @@ class Grown final : public Region {
   double by_;
 };
 
-/// What is solid, with what it is about.
+/// The solid of a container, with the space around it.
 class Container final : public Region {
  public:
   Container(Made solid, PlacedHollow hollow) : solid_(std::move(solid)), hollow_(std::move(hollow)) {}
@@ -113,7 +113,7 @@ double section(const Region& region, const Box3d& box, double voxel) {
                step = std::clamp(0.5 * voxel, std::max(size.x, size.z) / 2000, std::max(size.x, size.z) / 200);
   const auto nx = static_cast<int>(std::ceil(size.x / step)), nz = static_cast<int>(std::ceil(size.z / step));
   std::size_t inside = 0;
-  // What ends flush with the plane is open there.
+  // Parts that end flush with the plane are open there.
   const double flush = 1e-3 * step;
   for (int k = 0; k < nz; ++k)
     for (int i = 0; i < nx; ++i) {

@@ -1,4 +1,4 @@
-// What a file of geometry holds, as plain arrays: a mesh, or a cloud of points.
+// The content of a file of geometry, as plain arrays: a mesh, or a cloud of points.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,11 +24,11 @@ struct Model {
 
 Model model_of(const TriMesh& mesh);
 
-/// Of the vertices that faces name; of all where there are no faces.
+/// Returns the bounds of the vertices that faces name; of all vertices where there are no faces.
 Box3d bounds_of(const Model& model);
 
-/// What a closed mesh encloses, where it does so once; below 0 if its faces look inward. And the
-/// sum of all faces.
+/// Returns the volume that a closed mesh encloses, where it does so once; below 0 if its faces look
+/// inward. Otherwise the signed sum over all faces.
 double enclosed_volume(const Model& model);
 double surface_area(const Model& model);
 

@@ -40,7 +40,7 @@ struct CloudLook {
 /// points in one place count once.
 CloudLook look_at_cloud(const std::vector<Vec3d>& points);
 
-/// What is to be said of a cloud whose points count as spacing^3 each: points in one place, and a
+/// Returns warnings about a cloud whose points count as spacing^3 each: points in one place, and a
 /// spacing of its own that is more than a quarter off. `name` is for the text.
 std::vector<std::string> cloud_warnings(const std::vector<Vec3d>& points, double spacing, const std::string& name);
 

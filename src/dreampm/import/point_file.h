@@ -11,7 +11,7 @@ namespace dreampm {
 /// The ending of a name in lower case, without .gz: ".ply" of "A.PLY.gz".
 std::string file_kind(const std::filesystem::path& path);
 
-/// Whether files of that ending may hold points.
+/// True if files of that ending may hold points.
 bool is_point_kind(const std::string& kind);
 /// Such endings: ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo".
 std::string point_kinds();

@@ -12,8 +12,8 @@
 
 namespace dreampm {
 
-/// What a file says it is. A reader asks for `format` and `version`; `scene_hash` ties a checkpoint
-/// to its scene.
+/// The identity that a file states. A reader asks for `format` and `version`; `scene_hash` ties a
+/// checkpoint to its scene.
 struct ArchiveIdentity {
   std::string format;  ///< such as "dreampm-checkpoint"
   std::uint32_t version = 1;

@@ -24,7 +24,7 @@ Vec3d read_ply_shift(const std::filesystem::path& file);
 /// The header's line for it; empty for none.
 std::string ply_shift_comment(const Vec3d& shift);
 
-/// What headers say of the files of a run.
+/// A note in the headers of a run's files.
 inline constexpr const char* si_note = "SI units, Y up";
 
 /// One frame of particles, a column each; all columns have size() rows, optional ones may be empty.

@@ -27,11 +27,12 @@ struct FrameRecord {
   std::string state_hash;
   std::uint64_t particles = 0;
   std::uint64_t left = 0;  ///< particles that left through open walls so far
-  /// Where rigid bodies stand, by name, of the shape as the scene gives it.
+  /// The poses of rigid bodies by name, for the shape as the scene gives it.
   std::map<std::string, Pose> poses = {};
 };
 
-/// What a frame's mesh encloses, beside the volume of its particles: at rest, and as they lie.
+/// The volume that a frame's mesh encloses, beside the volume of its particles: at rest, and as
+/// they lie.
 struct VolumeRecord {
   int frame = 1;
   std::string material;
@@ -101,7 +102,7 @@ std::uint64_t machine_memory_bytes();
 std::uint64_t available_memory_bytes();
 /// The most memory this process held at once so far, in bytes.
 std::uint64_t peak_memory_bytes();
-/// What it holds now, in bytes; 0 if the system does not say.
+/// Returns the memory of this process, in bytes; 0 if the system does not say.
 std::uint64_t resident_memory_bytes();
 /// From now on peak_memory_bytes counts anew. False where the system cannot.
 bool restart_peak_memory();

@@ -40,7 +40,7 @@ double thickness_of(const Model& model);
 /// `voxel`: half of the thickness, but a quarter of `voxel` at least.
 double voxel_of_wall(double thickness, double voxel);
 
-/// What a mesh says of itself before any distance is known, sized as its shape asks.
+/// The properties of a mesh before any distance is known, sized as its shape asks.
 struct MeshLook {
   Box3d bounds;                  ///< m
   std::optional<double> volume;  ///< m^3, of a mesh that is closed and one part; others may enclose a place twice
@@ -54,8 +54,8 @@ struct MeshLook {
 /// Reads each file or asset once, and gives what scenes want of it.
 class Meshes {
  public:
-  /// What is to be said of a file (its model's warnings, faces that look inward, wide holes) is
-  /// logged when it is read, or kept for warnings().
+  /// The destination of warnings about a file (its model's, faces that look inward, wide holes):
+  /// the log when it is read, or warnings().
   enum class Say { log, keep };
   explicit Meshes(Say say);
   std::vector<std::string> warnings() const;

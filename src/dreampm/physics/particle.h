@@ -59,7 +59,7 @@ struct P2GTerms {
   Vec3<R> q, slope[3];
   Vec3<R> own_velocity;  ///< m/s: the particle's velocity now
   Vec3<R> shifted;       ///< cells: displacement besides its velocity's; only of volume-relaxed liquids in a step that
-                    ///< relaxes volume, and where there are colliders about
+                         ///< relaxes volume, and where there are colliders about
   /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of
   /// volume-relaxed liquids in a step that relaxes volume. 0 where the nodes hold less than
   /// `least_content` of a full one: drops of spray are no swollen liquid.

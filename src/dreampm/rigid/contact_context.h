@@ -1,4 +1,4 @@
-// What Bullet's callbacks know of the step that it resolves.
+// The context of Bullet's callbacks: data of the step that it resolves.
 #pragma once
 #include <cmath>
 #include <vector>

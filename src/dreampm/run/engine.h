@@ -17,7 +17,7 @@
 
 namespace dreampm {
 
-/// As sample times [s]: velocities of every step, or of the ends of frames alone.
+/// Sample times [s] that stand for every step, and for the ends of frames alone.
 inline constexpr double always = -std::numeric_limits<double>::infinity(),
                         never = std::numeric_limits<double>::infinity();
 
@@ -53,7 +53,7 @@ class Engine {
   const Motion<R>& motion() const { return motion_; }
   /// For edits, which change it with the particles.
   Motion<R>& motion() { return motion_; }
-  /// Whether `motion` is of the last step.
+  /// True if `motion` is of the last step.
   bool motion_is_current() const { return current_; }
 
   /// Makes what `fields` name current in the arrays of `world` and in `motion`: before they are

@@ -1,4 +1,4 @@
-// What the steps of a frame come to.
+// Sums over the steps of a frame.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,8 +8,7 @@
 
 namespace dreampm {
 
-/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a
-/// frame.
+/// Sums of a frame's ledger row over its steps; part of a checkpoint that falls within a frame.
 struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
@@ -37,9 +36,10 @@ template <class R>
 class FrameTotals final : public Observer {
  public:
   explicit FrameTotals(const Engine<R>& engine) : engine_(engine) {}
-  /// Of the frame at hand; at its end, until the next step, of the frame that ended.
+  /// Returns the sums of the present frame; at its end, until the next step, of the frame that
+  /// ended.
   const FrameSums& sums() const { return sums_; }
-  /// What a run that goes on from here adds to: nothing at the end of a frame.
+  /// Returns the sums to which a run that goes on from here adds: empty ones at the end of a frame.
   FrameSums carried() const { return ended_ ? FrameSums{} : sums_; }
   /// Particles times steps, in all.
   std::uint64_t particle_steps() const { return particle_steps_; }

@@ -63,7 +63,7 @@ void add_colors(Hash64& hash, const model::Scene& s) {
 
 void add_text(Hash64& hash, const YamlNode& map) { hash.add(std::string_view(write_yaml(map))); }
 
-/// What is measured changes no state, but only a new simulation measures it.
+/// Probes change no state, but only a new simulation measures with new ones.
 void add_probes(Hash64& hash, model::Scene s) {
   for (Probe& p : s.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) {

@@ -77,7 +77,8 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
 
 namespace {
 
-/// What a variant may not hold; its other keys are checked with the scene that it changes.
+/// Checks the keys that a variant may not hold; its other keys are checked with the scene that it
+/// changes.
 void check_variants(Reading& in, const YamlNode& variants) {
   read_named(in, variants, "variants", [&](const Entry& e, const std::string& path) {
     if (!expect_map(in.problems, e.value, path)) return;

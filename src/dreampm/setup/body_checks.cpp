@@ -30,7 +30,7 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
   return std::max({size.x, size.y, size.z}) < most_along * spacing ? region_volume(region, spacing) : 0;
 }
 
-/// Whether particles of that spacing hold the volume of the shape, with a margin.
+/// True if particles of that spacing hold the volume of the shape, with a margin.
 bool shows(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes) {
   try {
     const auto region = make_region(shape, spacing, meshes.regions());

@@ -189,7 +189,7 @@ class Search {
     return t;
   }
 
-  /// Whether a closed wall or another collider covers the place.
+  /// True if a closed wall or another collider covers the place.
   bool is_covered(const Vec3d& p) const {
     for (int a = 0; a < 3; ++a) {
       const auto side = static_cast<std::size_t>(2 * a);

@@ -11,7 +11,7 @@ double frame_end(const World<R>& world);
 
 /// The rest of a frame after a step.
 struct RestOfFrame {
-  bool done;    ///< whether the step ends the frame
+  bool done;    ///< true if the step ends the frame
   double left;  ///< s: from the end of the step to that of the frame, or of the next frame where the step ends one
 };
 /// After a step of `dt` [s] from now.

@@ -31,7 +31,7 @@ struct Collider {
   Pose surface_pose{};
   /// The prescribed motion, if there is one; pose and twist follow it.
   std::shared_ptr<const MotionPath> path{};
-  bool rigid = false;  ///< whether it is a rigid body (state/rigid_body.h)
+  bool rigid = false;  ///< true if it is a rigid body (state/rigid_body.h)
   /// The region of a collider whose surface changes. `shape` is its state at `surface_time` [s],
   /// which is `time`, or an earlier time since which no point moved by more than `settle_distance`.
   std::shared_ptr<const ChangingRegion> changing{};

@@ -34,7 +34,7 @@ struct Emitter {
   std::uint64_t pool = 0;
   bool recycle = false;
   std::uint64_t born = 0;                    ///< particles that it gave so far
-  bool dry = false;                          ///< whether its pool was ever used up
+  bool dry = false;                          ///< true if its pool was ever used up
   std::shared_ptr<const MotionPath> path{};  ///< where the shape stands; null: where the scene puts it
 
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }

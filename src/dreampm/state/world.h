@@ -64,7 +64,7 @@ struct StepSettings {
   double cfl = 0.5;
   double fixed_dt = 0;     ///< s; 0: from the bounds
   double dt_max = 1e30;    ///< s
-  bool sub_cycles = true;  ///< whether steps may be longer than explicit viscosity allows
+  bool sub_cycles = true;  ///< true if steps may be longer than explicit viscosity allows
   double damping = 0;      ///< 1/s: node velocities decay by exp(-damping dt)
   /// Keep particles inside walls, and let solids and grains touch these only when particles are
   /// there; false: walls act on nodes alone.

@@ -39,7 +39,7 @@ inline int first_node(float u) {
 /// arena. Without ArenaLoops::side_by_side they must also begin at four neighboring nodes along z.
 struct LaneGroup {
   bool together;
-  bool wide[2];           ///< whether some stencils begin at the second, along x and y
+  bool wide[2];           ///< true if some stencils begin at the second, along x and y
   std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
 };
 
@@ -123,7 +123,7 @@ struct ArenaLoops {
   /// Widens `extent` by `count` positions, a column for each axis, and finds the lane groups of
   /// their vectors. The extent passes over numbers that are NaN.
   void (*measure_extent)(const float* const (&u)[3], std::size_t count, LaneGroup* lane_groups, Extent& extent);
-  bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
+  bool side_by_side;  ///< true if vectors gather from two rows at once if these lie side by side
 };
 
 }  // namespace dreampm

@@ -148,7 +148,7 @@ class Cpu final : public Backend<float> {
     BlockPass pass{};
     Kernel kernel = nullptr;
     ViscousKernel viscous = nullptr;
-    bool weighs = false;              ///< whether its particles gather mass
+    bool weighs = false;              ///< true if its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: values change only before scatter_particles
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as in BlockPass; empty without thin walls

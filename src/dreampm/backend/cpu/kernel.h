@@ -43,7 +43,7 @@ struct BlockPass {
   const float* in;               ///< splines of velocity and mass of the set's field,
   int beside;                    ///< side by side along this axis, of x and y
   Node<float>* out;              ///< momenta and masses, added to
-  bool by_volume;                ///< whether a density is measured by the mixture, and not by mass
+  bool by_volume;                ///< true if a density is measured by the mixture, and not by mass
   const float* mixture_in;       ///< splines of the mixture, or null
   Node<float>* mixture_out;      ///< added to, or null
   const float* velocity_old_in;  ///< splines as in `in` before the forces; null unless the set keeps velocities

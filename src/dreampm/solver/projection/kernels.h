@@ -59,7 +59,7 @@ struct BlockMove {
   double slope2 = 0;    ///< and of their gradients [1/s^2]
   double lost = 0;      ///< J, at colliders
   bool finite = true;
-  bool far = false;  ///< whether any went more than a block
+  bool far = false;  ///< true if any went more than a block
 
   void add(const BlockMove& b) {
     fastest2 = b.fastest2 > fastest2 ? b.fastest2 : fastest2;

@@ -20,7 +20,7 @@ struct MoveStats {
   double usual = 0;    ///< m/s, that all but 0.1 % keep
   double kinetic = 0;  ///< J, with the affine part
   bool finite = true;
-  bool far = false;  ///< whether any went more than a block
+  bool far = false;  ///< true if any went more than a block
 };
 
 /// m/s, of all particles as they are.

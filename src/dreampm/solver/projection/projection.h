@@ -48,7 +48,7 @@ class Projection final : public Solver<R> {
     double density;   ///< kg/m^3, of the liquid
     double scale;     ///< Pa for each m/s that the pressure takes from a face
     double kinetic;   ///< J, of the liquid when it begins
-    bool solids;      ///< whether other matter lies beside the liquid
+    bool solids;      ///< true if other matter lies beside the liquid
     BodyContacts* contacts;
   };
   struct Moved {
