@@ -55,7 +55,7 @@ class Course {
   double memory_ = 0;
 };
 
-/// What the arrays of a world hold, and the second grid of a step, over particles [B].
+/// Returns the size of a world's arrays, and of the second grid of a step, over particles [B].
 double bytes_per_particle(const World<float>& world);
 
 }  // namespace dreampm

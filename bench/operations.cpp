@@ -12,7 +12,7 @@ OperationCount count(const World<float>& world) {
   const ParticleSet<float>& set = world.sets.front();
   const auto law = M::template Law<float>::from(set.values);
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
-  // As most steps, which relax no volume.
+  // Most steps relax no volume.
   step.volume_relaxation = 0;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2], false);
   OperationCount counts;

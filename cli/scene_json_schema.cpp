@@ -163,7 +163,7 @@ class SchemaWriter {
     return {{"type", "object"}, {"required", {"type"}}, {"oneOf", types}};
   }
 
-  /// Which type it is the map below says: all of their keys.
+  /// Returns the schema of a map of any type, with the keys of all types.
   SchemaJson any_type(const MapInfo& info) {
     SchemaJson properties = SchemaJson::object(), types = SchemaJson::array();
     put_keys(properties, info.keys);

@@ -29,7 +29,7 @@ class Drive {
     while (work < load_.energy && ratio > 1 / most && ratio < most) {
       at.volume = volume_;
       const StressResponse<double> r = advanced(law_, s_, at);
-      // What no longer gives numbers is outside of what a run can reach.
+      // States that no longer give finite numbers are outside of the reach of a run.
       if (!std::isfinite(r.energy) || !std::isfinite(r.sound_speed)) return;
       worst_.sound_speed = std::max(worst_.sound_speed, r.sound_speed);
       worst_.viscosity = std::max(worst_.viscosity, r.kinematic_viscosity);

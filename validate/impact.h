@@ -11,7 +11,7 @@ struct ImpactBounds {
   double viscosity = 0;    ///< m^2/s, what bounds the step
 };
 
-/// What loads a material.
+/// The load on a material.
 struct Load {
   double energy = 0;  ///< J/m^3 of rest volume that it can take up
   double time = 0;    ///< s of a doubling or halving, for what hangs on rates

@@ -81,7 +81,7 @@ std::string material_text(Dice& dice, const MaterialInfo& info, double density) 
 
 std::string wall_text(Dice& dice) {
   const std::string skin = dice.chance(0.3) ? ", skin_friction: true" : "";
-  // Of ten walls one is open.
+  // One wall of ten is open.
   const int which = dice.below(10);
   if (which < 3) return "{type: slip" + skin + "}";
   if (which < 6) return "{type: stick}";
@@ -282,7 +282,7 @@ RandomScene random_scene(std::uint64_t seed, int index, double asked_cfl) {
   most.speed = (flung + most.wave) * world.reach();
   RandomScene draw;
   draw.fall = fall;
-  // What is left of a frame is split evenly, so that a step can be half of its bound.
+  // The rest of a frame is split evenly, so that a step can be half of its bound.
   draw.dt_floor = shortest_dt(limit, dx, most) / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
   const int frames = 2 + static_cast<int>(random_scene_steps * step * fps);

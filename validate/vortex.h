@@ -18,7 +18,7 @@ struct VortexDecay {
   std::vector<double> times, log_energy;  ///< s, ln(KE/KE0)
 };
 
-/// Of its liquid.
+/// The liquid of a vortex.
 struct VortexLiquid {
   double factor = 1;                      ///< times the viscosity, for controls
   std::string transfer = "apic";          ///< apic, flip or asflip
@@ -39,7 +39,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
 /// The same with as many draws.
 std::vector<VortexDecay> vortex_decays(Trial& trial, int cells, double nu, VortexLiquid liquid = {});
 
-/// Of what `value` takes from each.
+/// Returns the mean of `value` over the draws.
 template <class Value>
 Mean mean_of(const std::vector<VortexDecay>& draws, const Value& value) {
   std::vector<double> values;
@@ -47,7 +47,7 @@ Mean mean_of(const std::vector<VortexDecay>& draws, const Value& value) {
   return mean_of(values);
 }
 
-/// Of their decay rates.
+/// Returns the mean of the draws' decay rates.
 inline Mean rate_error(const std::vector<VortexDecay>& draws) {
   return mean_of(draws, [](const VortexDecay& v) { return v.rate - 1; });
 }

@@ -30,7 +30,7 @@ struct ColliderState {
   /// N: what matter pressed it with, on average over the steps of the last call that took any; 0
   /// after `restore`, and after colliders came or went.
   Vec3d force{};
-  WallType type = WallType::separate;  ///< what its surface does to matter
+  WallType type = WallType::separate;  ///< effect of its surface on matter
   double friction = 0;                 ///< Coulomb's coefficient
   double restitution = 0;              ///< of impacts, 0 to 1, of a rigid body; 0 of other colliders
   double slack = 0;                    ///< cells, as `set_slack` has them

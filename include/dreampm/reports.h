@@ -63,7 +63,7 @@ struct Names {
   std::vector<std::string> rigid;      ///< rigid bodies alone
   std::vector<std::string> emitters, sinks, probes;
   std::vector<std::string> fields;   ///< of force
-  std::vector<std::string> brushes;  ///< that are down
+  std::vector<std::string> brushes;  ///< brushes that are set
 };
 
 /// The settings that decide how long steps are.

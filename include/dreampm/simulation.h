@@ -32,7 +32,7 @@ namespace dreampm {
 struct SimulationOptions {
   std::string backend = "cpu";  ///< cpu: fast, in float; reference: plain loops, in double
   std::string isa = "auto";     ///< instruction set of the cpu backend, which decides the bits; auto: the best one
-  int threads = 0;              ///< that a step uses at most; 0: all cores. Bits do not depend on it
+  int threads = 0;              ///< most threads that a step uses; 0: all cores. Bits do not depend on it
   Host* host = nullptr;         ///< null: lines go to stderr, and an interrupt of the process stops
 };
 
@@ -118,7 +118,7 @@ class Simulation {
   Names names() const;
   std::string backend() const;  ///< cpu or reference
   std::string isa() const;      ///< the instruction set that it computes by: avx2, baseline, ...
-  int threads() const;          ///< that a step uses at most
+  int threads() const;          ///< most threads that a step uses
   /// Sums over all matter. Looks at all particles.
   Totals totals() const;
   /// How many there are, and came and went. Looks at none.

@@ -38,7 +38,7 @@ Frames frames(nb::object simulation, std::optional<int> count) {
   return {{std::move(simulation)}, count.value_or(std::max(0, left))};
 }
 
-/// As the records of runs have it.
+/// Returns the state hash as the records of runs have it.
 std::string hex_of(std::uint64_t state) {
   Hash64 hash;
   hash.add(state);

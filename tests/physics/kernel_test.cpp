@@ -69,7 +69,7 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
   }
 }
 
-// What J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a, for
+// The rule that J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a,
 // whatever the nodes hold, and also where particles of two cells share four nodes.
 TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
   double nodes[4][4][3];

@@ -1,5 +1,5 @@
-// What was parsed can be written and read back; hashes change with what they cover and with nothing
-// else.
+// Scenes that were parsed can be written and read back; hashes change with what they cover and with
+// nothing else.
 #include "dreampm/scene/emit.h"
 
 #include <fmt/format.h>

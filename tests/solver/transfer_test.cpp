@@ -89,7 +89,7 @@ TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
     const Balance start = balance(w, initial_velocities(w, {one, other}));
     Motion<double> motion;
     for (int i = 0; i < 100; ++i) {
-      // What a memory keeps changes with the step.
+      // The kept share of a memory changes with the step.
       w.settings.fixed_dt = i % 3 == 0 ? 5e-4 : i % 3 == 1 ? 1e-4 : 2e-5;
       step(w, *backend, &motion);
     }

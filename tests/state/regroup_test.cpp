@@ -83,7 +83,7 @@ void stir(World<float>& w, std::uint64_t round) {
   w.drift = 0.9;
 }
 
-/// Where the particle is after a sort, by its definition. Cells come in rows along z, the rows of
+/// The place of a particle after a sort, by its definition. Cells come in rows along z, the rows of
 /// every second plane in reverse, so that each lies beside the one before.
 struct Place {
   Vec3i block;

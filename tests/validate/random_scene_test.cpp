@@ -37,8 +37,8 @@ TEST(RandomScene, TakesACflFromOutside) {
   EXPECT_GT(wild.dt_floor, drawn.dt_floor) << "the floor is that of its cfl";
 }
 
-/// Of all that is slower, softer and less viscous, with and without contacts; and some of it comes
-/// close.
+/// The bound holds for all that is slower, softer and less viscous, with and without contacts; and
+/// some of it comes close.
 TEST(RandomScene, NoStepIsShorterThanTheShortest) {
   constexpr double dx = 0.01, cfl = 0.5;
   for (const int contacts : {0, 1, 2})

@@ -201,7 +201,7 @@ TEST(Report, RealCasesPass) {
   }
 }
 
-/// What the page says of a scene is what the scene says.
+/// The page describes a scene as the scene does.
 TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   const auto set_up = [](const std::vector<std::string>& overrides, const char* name = "dam-break-1") {
     const model::Scene scene = built_in_scene(name, overrides);

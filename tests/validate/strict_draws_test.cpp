@@ -11,7 +11,7 @@ namespace dreampm::validate {
 namespace {
 namespace fs = std::filesystem;
 
-/// What stops the strict run of a draw; empty if nothing does.
+/// Returns the reason that stops the strict run of a draw; empty if there is none.
 std::string stopped_by(int draw, const std::string& backend, int frames) {
   model::Scene scene = random_scene(1, draw).scene;
   scene.output.checkpoint_every = 0;

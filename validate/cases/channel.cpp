@@ -36,7 +36,7 @@ void run(Trial& t) {
           0.035);
   const Flow pulls = flow(t, 6, {"materials.water.tension=true", "materials.water.relaxation=10"});
   t.control("water that pulls, relaxed ten times as strongly, 6 s", clumps, pulls.clumps);
-  t.control("no anchoring, 6 s", rows, flow(t, 6, {"materials.water.relaxation=0"}).rows);
+  t.control("no volume relaxation, 6 s", rows, flow(t, 6, {"materials.water.relaxation=0"}).rows);
 }
 
 }  // namespace

@@ -74,8 +74,8 @@ double height_error(const Fall& f, const Table& rows) {
 std::string at(int n2, int cells) { return fmt::format("n^2 = {}, a/{}: ", n2, cells); }
 const char *const rms = "rms error of the front, best shift", *const high = "worst error of H for tau <= 2.45";
 
-/// What of the experiment a column is compared with. Fronts are published as a table (n^2 = 2) or
-/// read from its plot (n^2 = 1).
+/// The part of the experiment with which a column is compared. Fronts are published as a table (n^2
+/// = 2) or read from its plot (n^2 = 1).
 struct Measured {
   Table heights, fronts, table;
   double end;  ///< of T
@@ -187,8 +187,8 @@ void run(Trial& t) {
       plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
       plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
       if (cells == 16 && t.full()) {
-        // What the skin friction of the floor and of the wall behind does: without it a column runs
-        // too fast at any resolution.
+        // Skin friction of the floor and of the wall behind matters: without it a column runs too
+        // fast at any resolution.
         const Fall smooth =
             fall(t, n2, cells, end, {"space.walls.floor.skin_friction=false", "space.walls.x_min.skin_friction=false"});
         t.report(name + "the same without skin friction", front_error(smooth, table, best_shift(smooth, table)), "%");

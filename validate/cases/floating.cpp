@@ -100,7 +100,7 @@ double farthest(const std::vector<double>& values, double want) {
   return worst;
 }
 
-/// Of the frames from when it has settled.
+/// Returns the values of the frames after it has settled.
 std::vector<double> at_rest(const Rest& r, const std::vector<double>& values) {
   const auto first = std::lower_bound(r.time.begin(), r.time.end(), settled - 1e-6);
   return {values.begin() + (first - r.time.begin()), values.end()};

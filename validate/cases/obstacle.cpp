@@ -237,8 +237,8 @@ void run(Trial& t) {
     const std::string coarse = cells == 64 ? "" : ", dx = 0.050";
     for (int k = 0; k < 4; ++k)
       t.control("a tenth of gravity, 2 s" + coarse, height_at(cells, k), error(slow, k, heights));
-    t.control("no anchoring, 3 s" + coarse, spacing(cells) + volume_late, std::abs(swelling(loose, 2, 3)));
-    t.control("no anchoring, 3 s" + coarse, spacing(cells) + volume_worst, most_swollen(loose));
+    t.control("no volume relaxation, 3 s" + coarse, spacing(cells) + volume_late, std::abs(swelling(loose, 2, 3)));
+    t.control("no volume relaxation, 3 s" + coarse, spacing(cells) + volume_worst, most_swollen(loose));
   }
 }
 

@@ -24,7 +24,7 @@ class Loaded {
  public:
   Loaded(const Values& values, double load) : law_(values, g, height), weight_(values["density"] * g), load_(load) {}
   double strain(double Y) const { return law_.strain(weight_ * (height - Y) + load_); }
-  /// Where what lay at Y comes to lie: the integral of J, by the trapezium.
+  /// Returns the place of the matter from Y: the integral of J, by the trapezium.
   double pressed(double Y) const {
     constexpr int parts = 200;
     double y = 0;

@@ -63,7 +63,7 @@ struct Marks {
   double trough = 0, crest = 0, at = 0;  ///< the lowest height between them, the highest behind, and when that is
   double period() const { return 2 * (zeros[1] - zeros[0]); }
 };
-/// Of the parabola through a sample and those beside it.
+/// Returns the time at the top of the parabola through a sample and those beside it.
 double time_of_top(const std::vector<double>& time, const std::vector<double>& height, std::size_t i) {
   if (i + 1 >= time.size()) return time[i];
   const double before = time[i] - time[i - 1], behind = time[i + 1] - time[i],

@@ -128,7 +128,7 @@ Snow thrown(Trial& t, const std::vector<std::string>& overrides = {}, double end
 }
 
 void snowball(Trial& t) {
-  // Of the packed preset; particles make the ball.
+  // The packed preset; particles make the ball.
   const double speed = 15, snow = 400 * 4.0 / 3 * std::numbers::pi * std::pow(0.08, 3), box = 200 * 0.12 * 0.24 * 0.24;
   const double along = speed * snow / (snow + box);
   t.note_choice(

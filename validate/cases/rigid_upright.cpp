@@ -1,5 +1,5 @@
-// Whether a floating box stays upright: the sign of its metacentric height, and the angle at which
-// it heels where that is negative.
+// Stability of a floating box: the sign of its metacentric height, and the angle at which it heels
+// where that is negative.
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -34,7 +34,7 @@ Slide slid(Trial& t, const std::string& wall, double degrees) {
   return s;
 }
 
-/// What `exact` says between 0 and its time.
+/// Returns the values of `exact` between 0 and its time.
 Curve parabola(std::string name, double distance) {
   Curve c{std::move(name), {}, {}, true};
   for (int k = 1; k <= 10; ++k) c.x.push_back(time * k / 10), c.y.push_back(distance * k * k / 100);

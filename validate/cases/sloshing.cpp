@@ -18,7 +18,7 @@ constexpr double g = 9.81;
 /// is 0.3 %.
 constexpr double steepest = 0.15;
 
-/// Of one wave: what the rows of the reference have, unless said otherwise.
+/// A wave; defaults are the values that all rows of the reference share.
 struct Wave {
   double periods = 2.1;  ///< exact ones
   double crest = 0;      ///< cells; 0: one, or as high as the steepest may be

@@ -1,4 +1,5 @@
-// What has fallen and come to rest fills its own volume again: slabs, layers, rain on a pool, mud.
+// Volume after a splash: matter that has come to rest fills its own volume again: slabs, layers,
+// rain on a pool, mud.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,7 +17,7 @@ namespace {
 constexpr double g = 9.81;
 constexpr double settled = 2;  ///< s after the impact, when a volume is judged
 
-/// What falls: a slab from wall to wall, or a pool that drops fall into.
+/// The falling matter: a slab from wall to wall, or a pool into which drops fall.
 struct Fall {
   std::string name;
   double bottom, depth;  ///< m, of the slab or the pool
@@ -185,7 +186,7 @@ void run(Trial& t) {
             t, fall, {"materials.water.transfer=" + transfer, "materials.water.max_compression=" + compression});
         const std::string metric = what + ": volume off by";
         t.at_most(metric, c.off(), 0.03, "%");
-        t.control("no anchoring", metric, (fall.drops ? loose_rain : loose).off());
+        t.control("no volume relaxation", metric, (fall.drops ? loose_rain : loose).off());
         if (compression == stiff.front()) plot.curves.push_back(curve_of(c, fall.name + ", " + transfer));
       }
   if (t.full()) {
@@ -196,12 +197,12 @@ void run(Trial& t) {
       const Course c = let_fall(t, fall, {mud});
       const std::string metric = "mud, " + fall.name + ": volume off by";
       t.at_most(metric, c.off(), 0.03, "%");
-      t.control("no anchoring", metric, loose_mud.off());
+      t.control("no volume relaxation", metric, loose_mud.off());
       plot.curves.push_back(curve_of(c, "mud, " + fall.name));
     }
     still_pool(t);
   }
-  plot.curves.push_back(curve_of(loose, "control: no anchoring"));
+  plot.curves.push_back(curve_of(loose, "control: no volume relaxation"));
   plot.curves.push_back(level("its own volume", 0, settled, 1));
   t.plot(std::move(plot));
 }

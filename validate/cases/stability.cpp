@@ -21,14 +21,14 @@ struct Outcome {
   double shortest = 0;  ///< step over its floor
   double kinetic = 0;   ///< largest kinetic energy over that of the fall
   double energy = 0;    ///< the same over that of the fall and of what gave energy
-  double given = 0;     ///< by anchoring: energy over it
+  double given = 0;     ///< by volume relaxation: energy over it
   double hardened = 0;  ///< by hardening
   double carried = 0;   ///< by the transfer, at most
   std::string scene;
   std::uint64_t particle_steps = 0;
 };
 
-/// What is wrong with the world, which began with `particles` particles; empty if nothing.
+/// Returns the fault of the world, which began with `particles` particles; empty if there is none.
 std::string fault_of(const World<float>& w, std::size_t particles) {
   if (w.particles() + w.left != particles)
     return fmt::format("{} particles are in the scene and {} left it, of {}", w.particles(), w.left, particles);
@@ -65,8 +65,8 @@ Outcome run_scene(const Options& options, const RandomScene& draw) {
     double mass = 0;
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
     const double start = mass, energy = mass * draw.fall * draw.fall / 2;
-    // What laws gave so far: by anchoring, and where hardening makes the same strain store more;
-    // and transfers, in sum.
+    // Energy from laws so far: from volume relaxation, and from hardening, which makes the same
+    // strain store more; and from transfers, in sum.
     double relaxed = 0, hardened = 0, transferred = 0;
     Motion<float> motion;
     for (int n = 1; n <= random_scene_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
@@ -113,8 +113,9 @@ void run(Trial& t) {
       "Nothing "
       "lost: what is in the scene and what left it are what began.");
   t.note_choice(
-      "Energy: known sources are the anchoring of liquids, which draws J to a density that 1 to 64 random particles a "
-      "cell read badly (an earlier version once gave a draw 899 times the energy of its fall in one anchoring), "
+      "Energy: known sources are the volume relaxation of liquids, which brings J to a density that 1 to 64 random "
+      "particles a "
+      "cell read badly (an earlier version once gave a draw 899 times the energy of its fall in one relaxation), "
       "hardening that makes the same strain store more (snow, seed), and asflip, whose affine part can grow beyond the "
       "velocities that it is taken from (docs/theory/step.md, Transfers: --seed 2004 --draw 126).");
   const Options& o = t.options();
@@ -146,7 +147,7 @@ void run(Trial& t) {
   t.at_most(name, failed, 0);
   t.report("shortest step over its floor", shortest);
   t.report("largest kinetic energy over that of the fall", kinetic);
-  t.report("largest energy that anchoring gave, over that of the fall", given);
+  t.report("largest energy that volume relaxation gave, over that of the fall", given);
   t.report("largest energy that hardening gave, over that of the fall", hardened);
   t.report("largest energy that transfers gave, over that of the fall", carried);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
@@ -223,7 +224,7 @@ void run_playground(Trial& t) {
   t.report("largest energy that hardening gave, over that of the fall", hardened);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
   t.at_most(sources, energy, most_energy);
-  // What is wrong is seen.
+  // Controls: each fault is found.
   std::vector<RandomScene> wrong, thrown;
   for (int i = 0; i < 4; ++i) {
     wrong.push_back(random_report_scene(1, i)), thrown.push_back(random_report_scene(1, i));

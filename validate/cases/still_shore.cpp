@@ -17,8 +17,8 @@ struct Left {
   std::vector<double> time, risen;  ///< s; of its center's height, in thousandths
 };
 
-/// What is left of the water after `time` [s]. `shapes`: of the colliders, of this run if there are
-/// none yet.
+/// Returns the rest of the water after `time` [s]. `shapes`: of the colliders, of this run if there
+/// are none yet.
 Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vector<std::string>& overrides) {
   ValidationRun<float> run(t, "still-shore", overrides);
   if (shapes.empty()) shapes = run.world.colliders;

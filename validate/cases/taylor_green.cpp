@@ -33,7 +33,7 @@ std::vector<VortexDecay> decays_of(Trial& t, const Study& s, int cells, Plot& pl
   return draws;
 }
 
-/// Of viscosity, over the kinetic energy lost, minus 1.
+/// Returns the heat of viscosity over the kinetic energy lost, minus 1.
 double heat_error(const std::vector<VortexDecay>& draws) {
   return std::abs(mean_of(draws, [](const VortexDecay& v) { return v.heat - 1; }).mean);
 }

@@ -64,7 +64,7 @@ void violent(Trial& t) {
             shake(t, {24, 24, 4}, 10, 10, {"materials.water.tension=true", "materials.water.relaxation=10"}).clumps);
   // The control needs no 50 s: without volume relaxation it swells from the start. LIQUID wants
   // more than 8 %.
-  t.control("plain J: no anchoring, no clamp, 10 s", depth,
+  t.control("plain J: no volume relaxation, no clamp, 10 s", depth,
             std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth),
             0.08);
   t.plot({"violent-tank",
@@ -84,7 +84,7 @@ void shallow(Trial& t) {
   t.at_least("lowest density inside, in motion", s.lowest(), 0.95);
   t.at_most("highest density inside, in motion", s.highest(), 1.03);
   const Shaken loose = shake(t, cells, 8, 10, {"materials.water.relaxation=0"});
-  const char* const what = "no anchoring, 10 s";
+  const char* const what = "no volume relaxation, 10 s";
   t.control(what, depth, std::abs(loose.depth), 0.3);  // as LIQUID wants
   t.control(what, "lowest density inside, in motion", loose.lowest());
   t.control(what, "highest density inside, in motion", loose.highest());

@@ -19,7 +19,7 @@ inline double slope_of(const std::vector<double>& x, const std::vector<double>& 
   return xy / xx;
 }
 
-/// Of draws: their mean, and its standard error; 0 without chance.
+/// The mean over draws, and its standard error; 0 without chance.
 struct Mean {
   double mean = 0, uncertainty = 0;
 

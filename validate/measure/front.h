@@ -13,7 +13,7 @@ namespace dreampm::validate {
 /// middle: so the moments at which slabs first hold that much, with their middles, are its motion.
 class Front {
  public:
-  /// Of the liquid set 0, whose front begins at `x` [m].
+  /// Makes the front of the liquid set 0, which begins at `x` [m].
   explicit Front(double x) : times{0}, places{x} {}
 
   template <class R>

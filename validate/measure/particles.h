@@ -1,4 +1,4 @@
-// What a world's particles say: positions, sums over slabs.
+// Sums over a world's particles: positions, slabs.
 #pragma once
 #include <algorithm>
 #include <vector>

@@ -10,8 +10,8 @@ namespace dreampm {
 /// Energies of the particles in a pass [J].
 struct PassEnergy {
   double kinetic = 0;
-  double kept_kinetic = 0;                       ///< of it, of sets that keep velocities
-  double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
+  double kept_kinetic = 0;                       ///< the part of sets that keep velocities
+  double viscous = 0, plastic = 0, relaxed = 0;  ///< parts turned into heat in this step
   PassEnergy& operator+=(const PassEnergy& b) {
     const auto& [b_kinetic, b_kept_kinetic, b_viscous, b_plastic, b_relaxed] = b;
     kinetic += b_kinetic, kept_kinetic += b_kept_kinetic;
@@ -28,9 +28,9 @@ struct PassStats {
   std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
   bool finite = true;
   PassEnergy energy;
-  Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
-  Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
-  double swollen = 0;  ///< m^3, of liquids beyond that at rest (P2GTerms::swollen)
+  Vec3d shifted{};     ///< mass times shift of the liquids [kg m]
+  Vec3d turned{};      ///< angular momentum gained by shifts [kg m^2/s]
+  double swollen = 0;  ///< volume of liquids beyond that at rest [m^3] (P2GTerms::swollen)
   void add(const PassStats& b);
 };
 

@@ -68,8 +68,8 @@ class SurfaceContact {
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
     bool limits = false;             ///< true if it limits another one
     bool acts = false;               ///< true if its impulse may be other than 0 in this call
-    std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
-    R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
+    std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps
+    R extrapolated = R(0);           ///< `impulse`, extrapolated by the momentum of the descent
   };
   /// A node in the stencil of a point, in the list of the point ...
   struct PointNode {
@@ -104,12 +104,12 @@ class SurfaceContact {
   struct PointBlock {
     std::size_t block;
     std::size_t begin, end;                        ///< of its points
-    Neighbors around;                              ///< the grid's blocks,
-    std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, for periodic ones,
-    std::array<std::uint32_t, 27> entries{};       ///< and how many nodes of points each of them has
+    Neighbors around;                              ///< the grid's blocks around it
+    std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, on periodic axes
+    std::array<std::uint32_t, 27> entries{};       ///< number of nodes of points in each block around
     bool has_matter = false;                       ///< true if there is matter at any of its points
-    bool acts = false;                             ///< true if any of them acts,
-    bool counts = false;                           ///< or limits another one
+    bool acts = false;                             ///< true if any of its points acts
+    bool counts = false;                           ///< true if any of its points acts or limits another one
     bool rests = false;                            ///< true if the velocities known of its points are 0
     std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
     bool cleared = false;                          ///< true if its points are as without matter
@@ -122,20 +122,20 @@ class SurfaceContact {
     std::size_t live_end = 0;                          ///< of those in live_points_, from `begin`
     std::size_t runs_end = 0;                          ///< of its runs_, which begin at 27 times its number
     int iterations = ColliderContact::iterations;      ///< most of the points that reach it
-    std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each:
-    std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
+    std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each
+    std::array<Vec3<R>, block_nodes> axis{};           ///< the collider's normal, along which alone sticking nodes move
     std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
     std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
     // State of its nodes, found anew in each call.
-    bool idle = false;                                  ///< true if there is no matter at all
-    bool has_matter = false;                            ///< true if there is matter at any point of its nodes
-    bool counts = false;                                ///< true if any of those may change it, or matters to others
-    bool moves = false;                                 ///< true if the collider of any of its points does
-    R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
-                                                        ///< relative to the colliders
-    std::array<Node<R>, block_nodes> facing;            ///< sums over points: normal times area, and area [dx^2]
-    std::array<R, block_nodes> most;                    ///< area of the largest point [dx^2],
-    std::array<std::uint16_t, block_nodes> collider{};  ///< and its collider
+    bool idle = false;                        ///< true if there is no matter at all
+    bool has_matter = false;                  ///< true if there is matter at any point of its nodes
+    bool counts = false;                      ///< true if any point may change the block, or matters to others
+    bool moves = false;                       ///< true if the collider of any of its points does
+    R max_speed2 = R(0);                      ///< the square of their largest speed before contact [m^2/s^2],
+                                              ///< relative to the colliders
+    std::array<Node<R>, block_nodes> facing;  ///< sums over points: normal times area, and area [dx^2]
+    std::array<R, block_nodes> most;          ///< area of the largest point [dx^2]
+    std::array<std::uint16_t, block_nodes> collider{};  ///< collider of the largest point
     std::array<Vec3<R>, block_nodes> velocity_before;   ///< velocity before contact [m/s]
     std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };

@@ -12,13 +12,13 @@ namespace dreampm {
 
 struct ObstacleNode {
   std::uint8_t node;       ///< index within the block
-  bool inside;             ///< the node's distance is <= 0,
-  bool deep;               ///< and even beyond `deep_nodes`
+  bool inside;             ///< true if the node's distance is <= 0
+  bool deep;               ///< true if the node is deeper inside than `deep_nodes`
   std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
-  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
-  Vec3d normal;            ///< outward, of nodes inside
-  Vec3d velocity{};        ///< of the collider there [m/s], of nodes inside one that moves
+  float blocked;           ///< fraction of the node's kernel inside the collider, as a plane; for several, their shares
+  float taken;             ///< the same for the whole solid, exact at edges too: densities are read with it
+  Vec3d normal;            ///< outward; of nodes inside
+  Vec3d velocity{};        ///< the collider's there [m/s]; of nodes inside one that moves
 };
 
 /// The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's

@@ -23,9 +23,9 @@ struct SurfacePoint {
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
   // Velocities, set for colliders that move (Obstacles::set_velocities), 0 for others:
-  Vec3<float> velocity{};  ///< of the surface [m/s],
-  Vec3<float> spin{};      ///< the spin of its collider [rad/s],
-  Vec3d arm{};             ///< and the way from the center of its twist to here [m]: moments are exact with it
+  Vec3<float> velocity{};  ///< of the surface [m/s]
+  Vec3<float> spin{};      ///< of the collider [rad/s]
+  Vec3d arm{};  ///< vector from the center of the collider's twist to the point [m]: moments are exact with it
 };
 
 /// Eight ways of a cell along a surface with that normal.

@@ -62,8 +62,8 @@ DM_FN NodeRow<N> nodes_of(const LineSpline<N>& line) {
 template <class R>
 struct LinePlace {
   R t;              ///< from the middle
-  R bend;           ///< what the value takes of the bend
-  R moment_factor;  ///< and four times the first moment
+  R bend;           ///< factor of the bend in the value
+  R moment_factor;  ///< factor of the bend in four times the first moment
 
   explicit DM_FN LinePlace(const R& from_middle) : t(from_middle) {
     using S = Scalar<R>;

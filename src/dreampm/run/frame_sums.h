@@ -13,13 +13,13 @@ struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
-  int stages = 0;        ///< of viscosity, the most of a step
-  ImpulseSum contact;    ///< what matter received from walls and colliders
-  ImpulseSum body;       ///< and from gravity, damping and fields
-  ImpulseSum left;       ///< what left took along
-  Entered entered;       ///< what emitters gave
+  int stages = 0;        ///< largest number of viscous stages of a step
+  ImpulseSum contact;    ///< impulses from walls and colliders on matter
+  ImpulseSum body;       ///< impulses from gravity, damping and fields
+  ImpulseSum left;       ///< momentum of matter that left
+  Entered entered;       ///< matter from emitters
   double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic and kept_kinetic unused
+  PassEnergy lost;       ///< energies that particles turned into heat; kinetic and kept_kinetic unused
   double transfer = 0;   ///< J, of StepSums
   double damping = 0;    ///< J that damping took
   double rounding = 0;   ///< N s, of StepSums

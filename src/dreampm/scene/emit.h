@@ -16,9 +16,9 @@ std::string yaml_list(const Vec3d& v);
 /// The parts of a run that can be redone on their own. Each hash covers what decides that part, the
 /// parts before it included: surface and render those of the simulation, video those of the render.
 enum class Part {
-  simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
-               ///< name
-  particles,   ///< and which attributes are written, and the probes
+  simulation,  ///< all that decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files
+               ///< they name
+  particles,  ///< attributes that are written, and the probes
   surface,
   render,
   video

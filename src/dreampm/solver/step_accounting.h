@@ -58,8 +58,8 @@ class StepAccounting {
   struct BeforeSort {
     ImpulseSum on_grid;     ///< momentum of the nodes
     std::uint64_t left;     ///< World::left
-    std::uint64_t taken;    ///< by sinks, so far: particles,
-    ImpulseSum took_along;  ///< and their momentum, in `impulse` and `angular`
+    std::uint64_t taken;    ///< particles that sinks took so far
+    ImpulseSum took_along;  ///< momentum of these, in `impulse` and `angular`
   };
   void add_what_left();
 

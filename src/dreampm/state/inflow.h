@@ -35,7 +35,7 @@ struct Emitter {
   bool recycle = false;
   std::uint64_t born = 0;                    ///< particles that it gave so far
   bool dry = false;                          ///< true if its pool was ever used up
-  std::shared_ptr<const MotionPath> path{};  ///< where the shape stands; null: where the scene puts it
+  std::shared_ptr<const MotionPath> path{};  ///< motion of the shape; null: it stays at the scene's place
 
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }
   double speed_at(double time) const { return value_at(std::span<const Key<double>>(speed), time); }
@@ -65,12 +65,12 @@ struct Emitter {
 /// A sink. It takes out matter inside it when particles are sorted: every few steps.
 struct Sink {
   std::string name;
-  std::shared_ptr<const Region> shape;       ///< null for
-  std::optional<std::size_t> collider = {};  ///< one that takes what touches it: what is within a cell
-  std::uint64_t taken = 0;                   ///< particles, so far
-  Vec3d momentum{};                          ///< kg m/s, that they took along,
-  Vec3d angular{};                           ///< and angular momentum about the scene's origin [kg m^2/s]
-  std::shared_ptr<const MotionPath> path{};  ///< where the shape stands; null: where the scene puts it
+  std::shared_ptr<const Region> shape;       ///< region of the sink; null for a collider
+  std::optional<std::size_t> collider = {};  ///< collider that takes matter within a cell of it
+  std::uint64_t taken = 0;                   ///< number of particles taken so far
+  Vec3d momentum{};                          ///< kg m/s, of the particles taken
+  Vec3d angular{};                           ///< kg m^2/s, of the particles taken, about the scene's origin
+  std::shared_ptr<const MotionPath> path{};  ///< motion of the shape; null: it stays at the scene's place
 };
 
 }  // namespace dreampm

@@ -94,8 +94,8 @@ struct SetRoom {
   /// there; [27] is the end of all that stay in the world.
   std::vector<std::array<std::uint32_t, 28>> runs;
   std::vector<std::uint32_t> order;   ///< the particles of each old block, by the neighbor that they move to
-  std::vector<std::uint32_t> from;    ///< of each particle its old place,
-  std::vector<std::uint32_t> before;  ///< and what that was before a first of two sorts
+  std::vector<std::uint32_t> from;    ///< old place of each particle
+  std::vector<std::uint32_t> before;  ///< place of each particle before the first of two sorts
   std::vector<std::uint32_t> start;   ///< block_start of the new blocks
   LargeVector<R> column;
 
@@ -214,10 +214,10 @@ struct Regroup<R>::Scratch {
   BlockList old;
   std::vector<HaloMask> reach;
   HaloUnion spread;
-  std::vector<Sources> sources;      ///< of every new block,
-  std::vector<std::uint64_t> cells;  ///< and its cells with particles
+  std::vector<Sources> sources;      ///< for every new block
+  std::vector<std::uint64_t> cells;  ///< cells with particles of every new block
   std::vector<SetRoom<R>> sets;
-  std::vector<std::vector<std::uint32_t>> taken;  ///< by set, what sinks take: it moves nowhere
+  std::vector<std::vector<std::uint32_t>> taken;  ///< by set, particles that sinks take: they move nowhere
   GridTopology<R> topology;
 
   void find_moves(World<R>& world);

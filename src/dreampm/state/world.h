@@ -102,15 +102,15 @@ struct World {
   GridFields<R> grid;
   std::vector<Collider> colliders;
   std::vector<RigidBody> rigid;
-  std::vector<CollisionShape> collision;  ///< of each collider, where there are rigid bodies
+  std::vector<CollisionShape> collision;  ///< one for each collider, where there are rigid bodies
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
-  double emitted_until = -1;       ///< s; emitters have given what they give until then
-  std::uint32_t next_id = 0;       ///< of the next particle that an emitter gives; 0 without emitters
-  double drift = 0;                ///< cells that any particle may have moved since the last sort
+  double emitted_until = -1;       ///< s; time up to which emitters have given matter
+  std::uint32_t next_id = 0;       ///< id of the next particle from an emitter; 0 without emitters
+  double drift = 0;                ///< bound on the cells that a particle moved since the last sort
   double wave_speed = 0;           ///< m/s, largest of the last pass
   double viscosity = 0;            ///< m^2/s, largest kinematic viscosity of the last pass
-  double kept_kinetic_energy = 0;  ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
+  double kept_kinetic_energy = 0;  ///< J, of sets that keep velocities, in the last pass; reported, not state
   std::uint64_t left = 0;          ///< particles that left through open walls, in all
   double node_speed = 0;           ///< m/s, largest of this step's nodes; not state: every step finds it anew
   double dt_before = 0;            ///< s, of the last step of a projection; 0 before the first
@@ -127,12 +127,12 @@ struct World {
   Vec3d gravity_at(double t) const {
     return gravity_keys.empty() ? gravity : value_at(std::span<const Key<Vec3d>>(gravity_keys), t);
   }
-  /// Its mean over a step from now: what the step's velocities gain is exact, whatever dt.
+  /// Returns the mean gravity over a step from now: the gain of velocity is exact, whatever dt.
   Vec3d gravity_over(double dt) const {
     return gravity_keys.empty() ? gravity : mean_over(std::span<const Key<Vec3d>>(gravity_keys), time, time + dt);
   }
-  /// Liquids and solids move in velocity fields of their own, so that one can slide along the
-  /// other.
+  /// True if there are liquids and solids: these move in velocity fields of their own, so that one
+  /// can slide along the other.
   bool needs_solid_field() const {
     bool liquid = false, solid = false;
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;

@@ -20,10 +20,10 @@ struct BlockExtent {
 
 /// Rows of nodes that are worth fetching while a block is at work. Hints: nothing need lie there.
 struct PrefetchHints {
-  const std::int32_t* rows;  ///< the numbers of their first nodes,
-  int count;                 ///< number of rows,
-  std::uintptr_t from;       ///< counted from here what the next block gathers from, unless 0,
-  std::uintptr_t to;         ///< and from here the first half of what this one gives to
+  const std::int32_t* rows;  ///< numbers of their first nodes
+  int count;                 ///< number of rows
+  std::uintptr_t from;       ///< base of the rows from which the next block gathers, or 0
+  std::uintptr_t to;         ///< base of the rows to which this block scatters; their first half is fetched
 };
 
 /// Columns of state that a material may have (docs/howto/add-a-material.md).
@@ -37,8 +37,8 @@ struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
   SetStep<float> step;
   BlockWalls<float> walls;
-  bool liquid;     ///< which numbers of the mixture the set feeds,
-  bool own_field;  ///< and whether it is of the solids' own field
+  bool liquid;     ///< true if the set is a liquid, which decides the numbers of the mixture that it feeds
+  bool own_field;  ///< true if the set moves in the solids' own field
   // Splines and arenas, from the first node that the block's particles can reach on.
   const float* in;               ///< splines of velocity and mass of the set's field,
   int beside;                    ///< side by side along this axis, of x and y
@@ -48,9 +48,9 @@ struct BlockPass {
   Node<float>* mixture_out;      ///< added to, or null
   const float* velocity_old_in;  ///< splines as in `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;     ///< splines of Obstacles::clearance, or null
-  /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or
-  /// null: near walls too thin for the splines of the clearance they take its place where they are
-  /// below `no_distance`.
+  /// Columns of the gradient of the distance from colliders, and of that distance [cells], or null.
+  /// Near walls too thin for the splines of the clearance they replace it, where they are below
+  /// `no_distance`.
   const float* distance[4];
   Node<float>* velocity_old_out;  ///< as in OldVelocityTerm, added to; null unless the set keeps velocities
   Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled

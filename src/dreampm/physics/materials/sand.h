@@ -30,7 +30,7 @@ inline constexpr Param sand_params[] = {
     {"grain_size", "m", 0, 0, 0.1, false, "diameter d of a grain: above 0 friction rises with the rate of shearing"},
     {"friction_rise", "1", 0.26, 0, 1, false, "what sin phi gains in the fastest flow, where d is given"},
     {"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"},
-    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring the volume to the measured density; 0 turns it off"},
+    {"relaxation", "1", 1, 0, 10, false, "strength of relaxing the volume to the measured density; 0 turns it off"},
 };
 inline constexpr Preset::Value dry_sand_values[] = {
     {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};

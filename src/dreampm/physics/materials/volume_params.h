@@ -17,6 +17,6 @@ inline constexpr Param bulk_modulus_param{"bulk_modulus",
 inline constexpr Param max_compression_param{
     "max_compression", "1", 0.01, 1e-4, 0.2, true, "largest wanted relative change of volume; gives the bulk modulus"};
 inline constexpr Param relaxation_param{
-    "relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"};
+    "relaxation", "1", 1, 0, 10, false, "strength of relaxing J to the measured density; 0 turns it off"};
 
 }  // namespace dreampm

@@ -52,11 +52,11 @@ struct BlockTaking {
   Beyond<R> beyond;
 };
 
-/// How the particles of a block went.
+/// Statistics of the motion of the particles of a block.
 struct BlockMove {
   double fastest2 = 0;  ///< m^2/s^2
-  double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2],
-  double slope2 = 0;    ///< and of their gradients [1/s^2]
+  double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2]
+  double slope2 = 0;    ///< sum of the squares of velocity gradients [1/s^2]
   double lost = 0;      ///< J, at colliders
   bool finite = true;
   bool far = false;  ///< true if any went more than a block
@@ -110,8 +110,8 @@ struct MatrixRows {
 
 /// Sums over the faces of some rows, each by the particles of liquid that it has.
 struct EnergySums {
-  double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
-  double projected = 0;  ///< and in the end
+  double given = 0;      ///< u^2/2 [m^2/s^2] as scattered from particles
+  double projected = 0;  ///< u^2/2 [m^2/s^2] after the pressure
   /// The loss between them: the velocity that a face lacks beside that by gravity, times the mean
   /// of its speeds before and after [m^2/s^2].
   double lost = 0;
