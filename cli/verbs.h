@@ -24,8 +24,8 @@ void add_bench_play(CLI::App& bench, Action& action);
 #else
 #define DM_APP_VERBS(VERB)
 #endif
-/// In the order of --help. A verb NAME is a row here, and a file of this folder that defines
-/// add_NAME.
+/// The verbs in the order of --help. A verb NAME is a row here, and a file of this folder that
+/// defines add_NAME.
 #define DM_VERBS(VERB) \
   VERB(make)           \
   DM_APP_VERBS(VERB)   \

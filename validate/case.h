@@ -27,8 +27,8 @@ struct Attachment {
   std::string name, about, text;
 };
 
-/// How a case is set up: the matter and walls of a scene that it runs, or what was chosen for it,
-/// and why.
+/// The set-up of a case: the matter and walls of a scene that it runs, or a choice for it, with the
+/// reason.
 struct SetUp {
   std::string scene;  ///< empty: a choice
   std::string text;

@@ -73,7 +73,7 @@ std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
   return points;
 }
 
-/// How a curve is drawn.
+/// The pen with which a curve is drawn.
 struct Pen {
   const char* color;
   const char* line = "stroke-width=\"1.6\"";  ///< attributes

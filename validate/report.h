@@ -52,7 +52,7 @@ std::string text_of(const Result& result);
 /// "11 of 12 cases passed, 1 missed gates as it is known to, 0 failed" with every missed gate by
 /// name. `seconds`: of the whole run by the clock.
 std::string summary_of(const std::vector<Result>& results, double seconds);
-/// Nothing failed, apart from misses that are known.
+/// True if nothing failed, apart from misses that are known.
 bool succeeded(const std::vector<Result>& results);
 /// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed
 /// counting cases; "known" counts those of the failed that only miss what they are known to miss.

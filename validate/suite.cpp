@@ -40,7 +40,8 @@ class Suite {
     }
   }
 
-  /// After all work. Results behind a case that was not done were not reported yet.
+  /// Returns the results after all work. Results behind a case that was not done were not reported
+  /// yet.
   std::vector<Result> results() {
     for (; reported_ < cases_.size(); ++reported_)
       if (results_[reported_]) done_(*results_[reported_]);

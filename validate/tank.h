@@ -30,7 +30,7 @@ class Tank {
         rest(run.world.sets[0].values, g, height) {
     if (run.compresses()) rest.move(run.seeds[0]);
   }
-  /// After the seeds were given their motion.
+  /// Begins the run, after the seeds were given their motion.
   void begin() {
     run.begin();
     if (run.compresses()) rest.press(run.world);

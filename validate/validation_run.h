@@ -72,7 +72,7 @@ class ValidationRun {
     scene_.begin();
     engine().download(MatterFields::all);
   }
-  /// Between steps a case may look at and change whatever it likes. `motion` is filled at the end
+  /// Makes a step. Between steps a case may read and change anything. `motion` is filled at the end
   /// of a frame, and from `next_sample_time` [s] on.
   StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");

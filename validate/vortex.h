@@ -27,8 +27,8 @@ struct VortexLiquid {
   double damping = 0;                     ///< 1/s, for controls: takes energy that is no heat of viscosity
 };
 
-/// How many draws of its points a result is the mean of: one alone differs from the next by up to
-/// 0.3 % of the rate.
+/// The number of draws of its points over which a result is the mean: one alone differs from the
+/// next by up to 0.3 % of the rate.
 inline constexpr int vortex_draws = 4;
 
 /// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s;

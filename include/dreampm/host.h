@@ -19,7 +19,7 @@ class Host {
   /// True if a progress line replaces the one before: then lines come five times a second, else
   /// every ten seconds.
   virtual bool rewrites_progress() const { return false; }
-  /// After the last of them, also where work was broken off.
+  /// Called after the last of them, also where work was broken off.
   virtual void progress_ends() {}
   /// Asked between steps: true ends the work with Interrupted, after the step.
   virtual bool stop_requested() { return false; }

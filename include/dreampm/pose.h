@@ -44,7 +44,7 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// How a rigid shape moves: the point x of it at velocity + spin x (x - center).
+/// The motion of a rigid shape: its point x moves at velocity + spin x (x - center).
 struct Twist {
   Vec3d velocity{};  ///< m/s, of the center
   Vec3d spin{};      ///< rad/s

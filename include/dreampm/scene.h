@@ -13,7 +13,7 @@
 
 namespace dreampm {
 
-/// How a scene file is read.
+/// Options for reading a scene file.
 struct SceneOptions {
   std::string variant;           ///< one of the file's variants; empty: the scene as it stands
   std::vector<std::string> set;  ///< PATH=VALUE each, laid over the variant: "space.spacing=0.01"

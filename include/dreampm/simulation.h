@@ -121,7 +121,7 @@ class Simulation {
   int threads() const;          ///< most threads that a step uses
   /// Sums over all matter. Looks at all particles.
   Totals totals() const;
-  /// How many there are, and came and went. Looks at none.
+  /// Returns the numbers of particles that there are, and that came and went. Reads no particle.
   ParticleCounts counts() const;
   /// The rows of a probe, which are those of its file in a run (docs/howto/measure-with-probes.md):
   /// at the start, and from then on at the ends of frames or at the probe's rate. `restore` goes
@@ -227,7 +227,8 @@ class Simulation {
   /// InputError for a name that no rigid body has, or numbers out of range.
   void hold(std::string_view rigid, const Grip& grip);
   std::optional<Grip> grip(std::string_view rigid) const;  ///< nothing where it is not held
-  /// Nothing happens where it is not held. Throws InputError for a name that no rigid body has.
+  /// Lets go of a rigid body; does nothing where it is not held. Throws InputError for a name that
+  /// no rigid body has.
   void let_go(std::string_view rigid);
   void let_go();  ///< of all
   /// A rigid body or another one. Throws InputError for a name that none has, one of a pin, or one
@@ -241,7 +242,7 @@ class Simulation {
   /// InputError for numbers out of range, and where the scene has a field of that name itself.
   void set_brush(std::string_view name, const Stroke& stroke);
   std::optional<Stroke> brush(std::string_view name) const;  ///< nothing where there is no such brush
-  /// Nothing happens where there is no such brush.
+  /// Removes a brush; does nothing where there is no such brush.
   void lift_brush(std::string_view name);
 
   // ---- memory

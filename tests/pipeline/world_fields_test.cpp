@@ -177,7 +177,7 @@ class Saved : public testing::Test {
              std::to_string(::getpid()) + ".h5");
   }
   void TearDown() override { std::filesystem::remove(file_); }
-  /// What comes back into a world of the same scene.
+  /// Returns the world as it comes back into one of the same scene.
   World64 there_and_back(const World64& world) {
     save_checkpoint(file_, world, {"scene", "reference", "scalar", {}, 0, {}});
     World64 back = as_world<double>(world);
@@ -217,7 +217,7 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   EXPECT_TRUE(back.sets[0].own[0].empty());
 }
 
-/// What is written whole may still be of another version, or of a program.
+/// A file that is whole may still be of another version, or of a program.
 TEST_F(Saved, WhatDoesNotFitTogetherIsRefusedByItsName) {
   const World64 world = full_world();
   EXPECT_NO_THROW(there_and_back(world));

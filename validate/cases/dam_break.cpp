@@ -12,7 +12,8 @@ namespace {
 
 constexpr double g = 9.81, a = 0.05715;
 
-/// In the experiment's units: T = n t sqrt(g/a), Z = x/a; tau = t sqrt(g/a), H = h/(n^2 a).
+/// The fall of a column in the experiment's units: T = n t sqrt(g/a), Z = x/a; tau = t sqrt(g/a), H
+/// = h/(n^2 a).
 struct Fall {
   std::vector<double> front_time, front, height_time, height;
 };

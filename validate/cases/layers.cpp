@@ -17,7 +17,7 @@ struct Left {
   std::vector<double> rows;  // of nodes, without those beside floor and surface
 };
 
-/// After `time` [s].
+/// Returns the state after `time` [s].
 Left leave(Trial& t, double time, const std::vector<std::string>& overrides = {}) {
   ValidationRun<float> run(t, "layers", overrides);
   run.begin();

@@ -110,7 +110,7 @@ Curve filtered(std::string name, const std::vector<double>& time, const std::vec
   return c;
 }
 double peak(const Curve& c) { return *std::max_element(c.y.begin(), c.y.end()); }
-/// When a tenth of the reference's peak is first passed.
+/// Returns the time at which a tenth of the reference's peak is first passed.
 double arrival(const Curve& c, double reference_peak) {
   for (std::size_t i = 0; i < c.x.size(); ++i)
     if (c.y[i] > 0.1 * reference_peak) return c.x[i];

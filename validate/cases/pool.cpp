@@ -42,7 +42,7 @@ Left look(const World<float>& w, double start, double deep) {
   return left;
 }
 
-/// After each of these times [s], `cells` deep.
+/// Returns the states after each of these times [s], `cells` deep.
 std::vector<Left> leave(Trial& t, const std::vector<double>& times, std::vector<std::string> overrides = {},
                         double deep = depth) {
   if (deep != depth)

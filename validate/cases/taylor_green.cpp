@@ -46,7 +46,7 @@ double loss_of_flip(double blend, int cells, double pace) {
   return 2 * (1 - blend) * (1 - std::pow(left, 4)) * pace;
 }
 
-/// Over the rate that viscosity and the transfer should have together, minus 1.
+/// Returns the rate over that which viscosity and the transfer should have together, minus 1.
 double error_of_flip(const std::vector<VortexDecay>& draws, double blend, int cells) {
   const auto rate = [&](const VortexDecay& v) {
     return v.rate * v.exact_rate / (v.exact_rate - loss_of_flip(blend, cells, v.pace));

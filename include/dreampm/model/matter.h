@@ -51,7 +51,7 @@ class Values {
   std::map<std::string, double, std::less<>> values_;
 };
 
-/// How a body is filled with particles.
+/// The pattern in which particles fill a body.
 enum class Pattern {
   jitter,   ///< the centers of cubic cells, each moved by up to a quarter of the spacing along every axis
   lattice,  ///< the centers of cubic cells
@@ -65,7 +65,7 @@ namespace model {
 struct Material {
   std::string name;                ///< as bodies and emitters call it
   std::string type = "newtonian";  ///< newtonian, elastic, snow, ...
-  /// By key. Keys that are not there have their defaults.
+  /// The values by key. Keys that are not there have their defaults.
   Values values{};
   std::string transfer = "apic";  ///< between its particles and the grid: apic, flip or asflip
   Values transfer_values{};       ///< flip_blend, flip_memory, ...: what the transfer takes

@@ -28,7 +28,7 @@ struct PoseKey {
 
 namespace model {
 
-/// How a shape moves: by keys, or at a constant velocity and spin.
+/// The motion of a shape: by keys, or at a constant velocity and spin.
 struct Motion {
   std::vector<PoseKey> keys;   ///< by time
   bool smooth = false;         ///< with keys: it slows down at each; else straight from key to key

@@ -51,7 +51,7 @@ struct ForceProbe {
   std::string on;  ///< a wall (floor, ceiling, x_min, ...), collider or rigid body
 };
 
-/// From where to where matter reaches along an axis.
+/// A probe of the extent of matter along an axis.
 struct ExtentProbe {
   static constexpr std::string_view type = "extent";
   std::uint8_t axis = 0;      ///< x, y, z

@@ -51,7 +51,7 @@ struct Scene {
   Render render;
   Video video;
 
-  /// By path ("bodies.drop"), of a scene that was read from a file.
+  /// Positions by path ("bodies.drop"), for a scene that was read from a file.
   std::map<std::string, Mark> marks;
 };
 

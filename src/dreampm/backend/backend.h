@@ -27,7 +27,7 @@ struct GridStats {
   double kinetic = 0;                 ///< J, after walls
   double arrived = 0;                 ///< J, kinetic, of what keeps velocities, before the forces
   std::array<ImpulseSum, 6> walls{};  ///< in the order of World::walls
-  /// In the order of World::colliders. Inline capacity: 8 colliders without allocation.
+  /// Impulses in the order of World::colliders. Inline capacity: 8 colliders without allocation.
   boost::container::small_vector<ImpulseSum, 8> colliders;
   ImpulseSum damping;
   ImpulseSum fields;  ///< force fields
@@ -61,7 +61,7 @@ class Backend {
   virtual PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
-  /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in
+  /// Sub-cycles what grid_update leaves to it: gravity, stress and viscosity of the step in
   /// world.viscous_stages stages, with contact in each. Brings `found` up to date and returns the
   /// heat of viscosity [J].
   virtual double sub_cycle(World<R>& world, double dt, GridStats& found) = 0;

@@ -64,9 +64,9 @@ class GridUpdate {
  public:
   explicit GridUpdate(const NodeLoops<R>& loops = plain_node_loops<R>());
   ~GridUpdate();
-  /// After every change of the grid's block list.
+  /// Must be called after every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
-  /// After colliders have moved alone.
+  /// Must be called after colliders have moved, if nothing else changed.
   void colliders_moved(const World<R>& world, const Obstacles& obstacles);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
   /// Sub-cycles viscosity as in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which

@@ -31,7 +31,7 @@ struct Bounds {
 /// depend on the number of threads.
 class ContactGaps {
  public:
-  /// After every change of the grid's block list or of the particles' order.
+  /// Must be called after every change of the grid's block list or of the particles' order.
   template <class R>
   void prepare(const World<R>& world, const Obstacles& obstacles);
   // A pass that moves particles may measure each block as it leaves it, while the processor still
@@ -72,8 +72,8 @@ class ContactGaps {
     float at(const SurfacePoint& point);
 
    private:
-    /// By the first node of a point's stencil, from -1 on along each axis, the smallest gap of the
-    /// particles whose stencils begin there or beside: many points ask for the same.
+    /// The smallest gap of the particles whose stencils begin at a node or beside it, by the first
+    /// node of a point's stencil, from -1 on along each axis: many points ask for the same.
     static constexpr int width = block_width + 1;
     using Smallest = std::array<float, width * width * width>;
     void find_smallest(int side);

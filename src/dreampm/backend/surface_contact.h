@@ -31,7 +31,7 @@ namespace dreampm {
 template <class R>
 class SurfaceContact {
  public:
-  /// After every change of the grid's block list.
+  /// Must be called after every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
   /// Instead, where the velocities of colliders alone have changed. Returns whether that was
   /// enough.
@@ -46,8 +46,8 @@ class SurfaceContact {
   /// passed over. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
-  /// Before the fields of a visit of a step of `dt` [s]: rigid bodies are unknowns in it. Without
-  /// they move as their twists say.
+  /// Begins a visit of the fields in a step of `dt` [s] in which rigid bodies are unknowns. Without
+  /// it they move as their twists say.
   void begin_bodies(const World<R>& world, double dt) { bodies_.begin(world, dt); }
   void end_bodies() { bodies_ = {}; }
 
@@ -164,7 +164,8 @@ class SurfaceContact {
   /// Calls body(node block) for those that points of a block may reach.
   template <class Body>
   void for_node_blocks_around(const PointBlock& point_block, const Body& body);
-  /// Beside rigid bodies it takes more of them; elsewhere these would cost as much for nothing.
+  /// Sets the number of iterations: more near rigid bodies; elsewhere these would cost as much for
+  /// nothing.
   void set_iterations();
   NodeBlock& node_block_of(std::uint32_t node) {
     return node_blocks_[static_cast<std::size_t>(node_block_index_[node / block_nodes])];

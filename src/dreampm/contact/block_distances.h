@@ -21,7 +21,7 @@ class BlockDistances {
   /// The colliders of `other` more.
   void add(const BlockDistances& other);
 
-  /// At the block's node of that index.
+  /// Returns the distance at the block's node of that index.
   double at_node(int n) const { return d_[index(node_offset(n))]; }
   /// Returns the clearance as in Obstacles::clearance. A quadratic spline of the distances
   /// themselves would be off by an eighth of their Laplacian: by 1/4 r cells on a sphere of r

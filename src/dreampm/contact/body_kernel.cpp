@@ -47,7 +47,7 @@ class Voxels {
   Voxels(const ColliderView& view, const Vec3d& size, int fine) : view_(view), fine_(fine) {
     for (int a = 0; a < 3; ++a) high_[a] = static_cast<int>(std::ceil((0.5 * size[a] + 3) * fine / side));
   }
-  /// In the cells of the view.
+  /// Returns a voxel's place in the cells of the view.
   Vec3d at(const Vec3d& voxel) const { return voxel * (1.0 / fine_); }
   Vec3d at(const Vec3i& voxel) const { return at(static_cast<Vec3d>(voxel)); }
   double distance(const Vec3d& voxel) const { return view_.nearest(at(voxel)); }

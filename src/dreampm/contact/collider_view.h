@@ -96,13 +96,13 @@ class ColliderView {
   }
   bool holds_matter(std::uint16_t collider) const { return (*colliders_)[collider].collider.holds; }
   bool is_rigid_body(std::uint16_t collider) const { return (*colliders_)[collider].collider.rigid; }
-  /// Its outward normal there.
+  /// Returns its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
   /// The velocity of its matter there [m/s].
   Vec3d velocity(std::uint16_t collider, const Vec3d& at) const;
   /// The way there from the center of its twist, before the walls [m].
   Vec3d arm(std::uint16_t collider, const Vec3d& at) const;
-  /// Its spin before the walls [rad/s].
+  /// Returns its spin before the walls [rad/s].
   const Vec3d& spin(std::uint16_t collider) const { return (*colliders_)[collider].collider.twist.spin; }
 
   /// The distance from the faces of that collider that matter can touch: inside beside a hidden

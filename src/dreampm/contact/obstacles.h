@@ -49,8 +49,8 @@ class Obstacles {
   }
   /// True if a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
-  /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as
-  /// the last number, after its gradient; empty without colliders.
+  /// Returns for the nodes of the grid the distance from the nearest collider [cells], negative
+  /// inside, as the last number, after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }
   /// The colliders around a block, and its cells in which particles need their exact distance from
   /// them, a bit each.

@@ -118,7 +118,8 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
 
 /// Cells from the middle of a block within which surfaces cut its cells: half its diagonal.
 constexpr double block_reach_of_surfaces = 3.5;
-/// How far a surface may be from the middle of a cell that it cuts [cells]: half the diagonal.
+/// Bound of the distance from the middle of a cell to a surface that cuts it [cells]: half the
+/// diagonal.
 constexpr double half_diagonal = 0.87;
 
 /// True if a surface may cut one of the eighths of a cell.

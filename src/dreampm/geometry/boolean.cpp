@@ -122,7 +122,7 @@ class Boolean final : public Region {
     return Felt{same_side ? at.distance : aside(at), length2(slope) > 0 ? normalized(slope) : n};
   }
 
-  /// How far the edge of a sheet is, as the side `distance` has it: its distance where the way from
+  /// Returns the edge of a sheet, as the side `distance` has it: its distance where the way from
   /// the sheet along `along` first comes nearer to another face of it; and the way to that place.
   template <class Distance>
   Edge edge(const Vec3d& foot, const Vec3d& along, const Distance& distance) const {

@@ -76,7 +76,7 @@ class BrickGrid {
   Vec3d direction(const Vec3d& p) const;
 
  private:
-  /// In the cell that begins at voxel `i`, at `f` of its sides.
+  /// Returns the value in the cell that begins at voxel `i`, at `f` of its sides.
   double sample(const Vec3i& i, const Vec3d& f) const;
 
   Vec3i low_{}, count_{};

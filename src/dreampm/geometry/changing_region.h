@@ -16,7 +16,7 @@ class ChangingRegion {
   virtual Vec3d velocity(const Vec3d& p, double time) const = 0;
   /// The largest speed [m/s] of a point of its surface between two times [s].
   virtual double fastest(double from, double to) const = 0;
-  /// How far a point of its surface moves at most between two times [m].
+  /// Returns a bound of the distance that a point of its surface moves between two times [m].
   virtual double farthest(double from, double to) const = 0;
 };
 

@@ -46,10 +46,10 @@ class Container final : public Region {
   PlacedHollow hollow_;
 };
 
-/// How far the region reaches along an axis [m], looking towards `sign`. Boxes are halved, those
-/// that may reach farthest first. A distance is at most the true one, so that the ball about a
-/// point inside is inside, and a box around a point that is farther outside than its corners holds
-/// nothing. -1e30 where nothing is found.
+/// Returns the reach of the region along an axis [m], looking towards `sign`. Boxes are halved,
+/// those that may reach farthest first. A distance is at most the true one, so that the ball about
+/// a point inside is inside, and a box around a point that is farther outside than its corners
+/// holds nothing. -1e30 where nothing is found.
 double reach_along(const Region& region, const Box3d& bounds, int axis, double sign, double tolerance) {
   struct Piece {
     double most;

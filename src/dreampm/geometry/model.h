@@ -39,7 +39,7 @@ TriMesh about(const Model& model, const Vec3d& origin);
 /// holds.
 void require_finite(const Model& model, const std::string& name);
 
-/// For every vertex the first one at its place; all are finite.
+/// Returns for every vertex the first one at its place; all are finite.
 std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices);
 
 /// One vertex a place, which all faces there name. Of vertices without columns.

@@ -58,7 +58,7 @@ class Board {
     return (static_cast<std::size_t>(c.x + reach) * width_ + static_cast<std::size_t>(c.y + reach)) * width_ +
            static_cast<std::size_t>(c.z + reach);
   }
-  /// With its images beyond the faces.
+  /// Adds a point with its images beyond the faces.
   void put(const Vec3i& c, const Vec3d& p) {
     const auto number = static_cast<std::int32_t>(points_.size());
     points_.push_back(p);

@@ -67,7 +67,7 @@ class Cuboid final : public Region {
   void distances(const PointColumns& points, double* to) const override {
     for_points(points, to, [half = half_](const Vec3d& p) { return from(half, p); });
   }
-  /// To the bits of Region::normal, which asks six times.
+  /// Returns the normal, with the bits of Region::normal, which asks six times.
   Vec3d normal(const Vec3d& p) const override {
     constexpr double h = normal_step;
     const Vec3d q{std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};

@@ -29,7 +29,7 @@ double to_limb(const Vec3d& p, const Joint& a, const Joint& b) {
   return length(off - along * t) - (a.radius + (b.radius - a.radius) * t);
 }
 
-/// To a triangle with rounded edges.
+/// Returns the distance to a triangle with rounded edges.
 double to_plate(const Vec3d& p, const std::array<Vec3d, 3>& v, double half) {
   const Vec3d normal = normalized(cross(v[1] - v[0], v[2] - v[0]));
   bool inside = true;

@@ -40,7 +40,7 @@ Place place_of(const GltfValue& node) {
           {t[0], t[1], t[2]}};
 }
 
-/// How numbers of an accessor lie.
+/// Returns the type of the numbers of an accessor.
 const NumberType* number_type_of(std::size_t component) {
   switch (component) {
     case 5121:

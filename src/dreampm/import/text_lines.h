@@ -59,7 +59,7 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// In lower case, as keywords are compared.
+/// Returns the text in lower case, as keywords are compared.
 std::string lower(std::string_view text);
 
 }  // namespace dreampm

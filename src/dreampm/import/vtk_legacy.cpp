@@ -232,7 +232,7 @@ class LegacyFile {
     const NumberType& type = need_type();
     values(rows_ * columns, type, "TEXTURE_COORDINATES");
   }
-  /// Before POINT_DATA it is of the whole data set.
+  /// Reads a field: before POINT_DATA it is of the whole data set.
   void field(const std::string&) {
     need_word("a name");
     for (std::size_t n = need_count("arrays"); n > 0; --n) {

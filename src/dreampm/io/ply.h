@@ -69,7 +69,7 @@ TriMesh read_mesh(const std::filesystem::path& file);
 /// numbers.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
                const std::string& note = si_note);
-/// Its line for a vertex.
+/// Returns the OBJ line of a vertex.
 std::string obj_vertex(const Vec3f& v, const Vec3d& shift);
 
 }  // namespace dreampm

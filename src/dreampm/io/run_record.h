@@ -82,7 +82,7 @@ struct RunRecord {
 
   /// A record with version and commit of this build and the four stages, none run.
   static RunRecord for_this_build();
-  /// How a stage ended; status, cause and failed_stage follow from all of them.
+  /// Records the end of a stage; status, cause and failed_stage follow from all of them.
   void end_stage(const std::string& stage, std::optional<std::string> status,
                  std::optional<std::string> cause = std::nullopt);
   std::string to_json() const;
@@ -104,7 +104,7 @@ std::uint64_t available_memory_bytes();
 std::uint64_t peak_memory_bytes();
 /// Returns the memory of this process, in bytes; 0 if the system does not say.
 std::uint64_t resident_memory_bytes();
-/// From now on peak_memory_bytes counts anew. False where the system cannot.
+/// Makes peak_memory_bytes count anew. Returns false where the system cannot.
 bool restart_peak_memory();
 
 }  // namespace dreampm

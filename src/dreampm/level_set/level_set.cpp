@@ -107,7 +107,7 @@ double longest_side(const Box3d& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// For those who ask for bounds alone.
+/// A region for those who ask for bounds alone.
 class BoundsOnly final : public Region {
  public:
   explicit BoundsOnly(const Box3d& box) : box_(box) {}

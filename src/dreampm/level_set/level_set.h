@@ -59,8 +59,9 @@ class Meshes {
   enum class Say { log, keep };
   explicit Meshes(Say say);
   std::vector<std::string> warnings() const;
-  /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its
-  /// region. Equal requests share one region while it lives. `reach` as in mesh_region.
+  /// Returns regions for make_region: sizes the mesh (`longest` or `scale`, about the file's
+  /// origin), and makes its region. Equal requests share one region while it lives. `reach` as in
+  /// mesh_region.
   MeshRegions regions(double reach = 0) const;
   /// Regions whose voxels are down to a quarter of those asked for where the mesh is a thin wall,
   /// so that two take up its thickness: a wall of one may fall between the places that are sampled.
@@ -69,7 +70,8 @@ class Meshes {
   /// The shells of that thickness [m] about meshes (shell.h). Of these it is not said that they are
   /// open.
   MeshRegions shells(double thickness, double reach) const;
-  /// For make_region, where only bounds are asked for: distances are those to the bounds.
+  /// Returns regions for make_region where only bounds are asked for: distances are those to the
+  /// bounds.
   MeshRegions boxes() const;
   MeshLook look(const MeshShape& shape) const;
 

@@ -15,7 +15,7 @@
 namespace dreampm {
 namespace {
 
-/// Between two regions.
+/// A region between two others.
 class Between final : public Region {
  public:
   Between(std::shared_ptr<const Region> a, std::shared_ptr<const Region> b, double part)

@@ -67,8 +67,8 @@ struct MotionPath {
     const double sine = length(axis);
     return sine > 0 ? axis * (2 * std::atan2(sine, std::abs(q.w)) / sine) : Vec3d{};
   }
-  /// Between keys of one axis the angle goes its way, be it several turns; between others the
-  /// shortest.
+  /// True if both keys turn about one axis: the angle between them may be several turns; else it is
+  /// the shortest.
   static bool one_axis(const PoseKey& a, const PoseKey& b) {
     return a.rotate_angle == 0 || b.rotate_angle == 0 || normalized(a.rotate_axis) == normalized(b.rotate_axis);
   }

@@ -53,7 +53,7 @@ DM_FN R wall_shear(const R& re) {
   return one / (u * u);
 }
 
-/// How far from the wall [cells] the matter is, in the mean, that a node on it stands for: of |x|
+/// Mean distance from the wall of the matter that a node on it stands for [cells]: the mean of |x|
 /// under the quadratic spline.
 inline constexpr double wall_node_height = 13.0 / 32;
 
@@ -74,8 +74,8 @@ template <class R>
 DM_FN R slip_drag(const R& diffusion, const R& m_liquid, const R& m_solid) {
   return diffusion * (m_liquid + m_solid) / m_solid;
 }
-/// Over dt nu/dx^2, the skin's drag in viscous flow. More than this no viscous contact has among
-/// the forces of a stage (physics/dt.h).
+/// The skin's drag in viscous flow over dt nu/dx^2. No viscous contact has more than this among the
+/// forces of a stage (physics/dt.h).
 inline constexpr double stage_drag = 2 / wall_node_height;
 
 /// Takes `change` [m/s] off the velocity between a liquid and a solid at a node; momentum is kept.

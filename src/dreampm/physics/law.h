@@ -40,7 +40,7 @@ DM_FN R measured_volume(const StrainIncrement<R>& at) {
   return moved_volume(at.volume, at.gradient);
 }
 
-/// By how much liquid has swollen, from the measured volume corrected for the surface.
+/// The swelling of a liquid, from the measured volume corrected for the surface.
 template <class R>
 struct Swelling {
   R strain;  ///< volume over that at rest, less 1 [1]
@@ -60,9 +60,9 @@ struct Swelling {
   using S = Scalar<R>;
 };
 
-/// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than
-/// 2/3, as from 1 on. The x of a stable step are below 0.1. Digits that the difference would lose
-/// are kept, and no e is raised for every particle.
+/// Returns the share of a relaxation after x >= 0 of its time: 1 - e^-x within x^4/24, and no more
+/// than 2/3, as from 1 on. The x of a stable step are below 0.1. Digits that the difference would
+/// lose are kept, and no e is raised for every particle.
 template <class R>
 DM_FN R relaxed_share(const R& x) {
   using S = Scalar<R>;
@@ -84,8 +84,8 @@ DM_FN auto volume_ratio(const Law& law, const State& state) {
 /// al. 2021).
 inline constexpr double pressed_ratio = 0.999;
 
-/// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its
-/// volume, unless the law knows better.
+/// Returns the degree from 0 to 1 to which matter has come apart, so that it may move by itself
+/// (ASFLIP). It follows from the volume, unless the law has its own.
 template <class Law, class State>
 DM_FN auto separated_fraction(const Law& law, const State& state) {
   if constexpr (requires { law.separated_fraction(state); }) {

@@ -65,7 +65,7 @@ struct Pair {
   }
 };
 
-/// For places where only the liquid takes room.
+/// A tag for places where only the liquid takes room.
 struct NothingElse {};
 
 /// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the

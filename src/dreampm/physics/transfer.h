@@ -245,8 +245,8 @@ DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
                          splines_of<R>(row));
 }
 
-/// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own
-/// field, sum w' v, for a bend of 1 along it: `t` as in Stencil.
+/// Returns the excess of 4 sum w v (x_i - x_p) along an axis over the derivative of the splines'
+/// own field, sum w' v, for a bend of 1 along it: `t` as in Stencil.
 template <class R>
 DM_FN R affine_excess(const R& t) {
   using S = Scalar<R>;

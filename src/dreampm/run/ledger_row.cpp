@@ -17,8 +17,8 @@ double mechanical(const LedgerRow& row) { return row.kinetic + row.elastic + row
 /// below over a row: steps change their length, and matter is not linear. Chosen, not derived.
 constexpr double step_share = 0.05;
 
-/// How much of the energy of this row may come from nowhere [J]. `momentum`: the row's
-/// momentum_bound; `ulp`: what one sum may be off by rounding, of itself.
+/// Returns the bound of the energy of this row that may come from nowhere [J]. `momentum`: the
+/// row's momentum_bound; `ulp`: the relative rounding error of one sum.
 ///  - A symplectic step keeps E - dt/2 P for linear matter and constant gravity, and not the energy E; P = dE/dt is the
 ///    power of what is stored. Only steps that a scene may ask for count: longer ones explain no more.
 ///  - Where matter flows plastically, the strain on trial holds energy that stress, as it was before the step, did not
@@ -82,7 +82,7 @@ double liquid_volume(const World<R>& world) {
   return volume;
 }
 
-/// By which share of their volume at rest liquids take more than that.
+/// Returns the share of their volume at rest by which liquids take more than that.
 template <class R>
 double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow* before) {
   const double rest = liquid_volume(world);

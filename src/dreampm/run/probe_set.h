@@ -31,9 +31,9 @@ class ProbeSet {
   /// Goes on from a time [s]. Throws InputError if a probe is not in the memories, or was another
   /// one.
   void resume(const ProbeMemories& memories, double time);
-  /// When the next one is due within a frame [s]; infinity if none is.
+  /// Returns the time of the next sample within a frame [s]; infinity if none is due.
   double next() const;
-  /// After every step.
+  /// Adds a step to the running means; after every step.
   void accumulate(const StepSums& step);
   /// Returns the fields that `sample` will read at a time [s].
   MatterFields fields_due(double time, bool frame_done) const;

@@ -18,7 +18,7 @@ std::string yaml_list(const Vec3d& v);
 enum class Part {
   simulation,  ///< all that decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files
                ///< they name
-  particles,  ///< attributes that are written, and the probes
+  particles,   ///< attributes that are written, and the probes
   surface,
   render,
   video

@@ -82,7 +82,7 @@ struct Field {
   }
 };
 
-/// Only written when the test holds; read in any case.
+/// Makes the field one that is only written when the test holds, and read in any case.
 template <class T>
 Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
   f.write_always = f.write;

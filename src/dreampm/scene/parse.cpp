@@ -119,7 +119,8 @@ bool can_be_checked(Problems& problems, const YamlNode& base, std::size_t varian
   return false;
 }
 
-/// By place; what has none comes first. Problems of one place keep their order.
+/// Returns the problems by place; those without one come first. Problems of one place keep their
+/// order.
 std::vector<Problem> sorted(const std::vector<Problem>& list) {
   const auto before = [](const Problem& a, const Problem& b) {
     return std::pair(a.line, a.column) < std::pair(b.line, b.column);

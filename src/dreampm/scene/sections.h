@@ -161,7 +161,7 @@ ValueInfo pins_info();
 ValueInfo fields_info();
 ValueInfo probes_info();
 
-/// Over the look that holds without it.
+/// Reads a look over the one that holds without it.
 void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out);
 /// Gives every material and collider its look: the one in the map `render` (or null), else
 /// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks

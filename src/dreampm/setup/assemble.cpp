@@ -316,7 +316,7 @@ InitialState assemble(const model::Scene& scene, const std::string& file, std::s
   assembly.place_colliders(standing);
   assembly.refuse();
   assembly.note_what_is_there(standing.empty());
-  // Where colliders stand already, only matter is added.
+  // Matter alone is added to colliders that stand already.
   assembly.set_up_world(standing.empty());
   assembly.cut_bodies();
   assembly.check_pools();

@@ -18,7 +18,7 @@ namespace dreampm {
 /// show a small mesh.
 Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes);
 
-/// How a body is filled.
+/// The pattern and seed with which a body is filled.
 struct Sampling {
   Pattern pattern;
   std::uint64_t seed;

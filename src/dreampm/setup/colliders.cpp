@@ -85,7 +85,7 @@ void Overlap::operator+=(const Overlap& other) {
 
 namespace {
 
-/// How deep points lie in a collider [m], where it and they are repeated.
+/// The depth of points in a collider [m], where it and they are repeated.
 template <class R>
 class Depth {
  public:

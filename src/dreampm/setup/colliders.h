@@ -31,7 +31,7 @@ std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>
 /// what cannot be read or encloses nothing.
 Collider make_collider(const model::Collider& given, const model::Scene& scene, double time, const Meshes& meshes);
 
-/// How much of a body's matter lies inside of a collider.
+/// The part of a body's matter that lies inside of a collider.
 struct Overlap {
   std::size_t particles = 0;
   double depth = 0;  ///< m, of the deepest particle

@@ -90,7 +90,7 @@ bool has_own_form(const Shape& shape) {
          std::holds_alternative<CylinderShape>(shape.form) || std::holds_alternative<PlaneShape>(shape.form);
 }
 
-/// How deep a body lies in another collider [m], by samples over its bounds.
+/// Returns the depth of a body in another collider [m], by samples over its bounds.
 double depth_in(const Collider& body, const Collider& other) {
   constexpr int samples = 20;
   const Box3d box = body.bounds();

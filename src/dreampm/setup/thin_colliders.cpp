@@ -176,7 +176,8 @@ class Search {
     out.push_back({0.5 * (from + to), thickness});
   }
 
-  /// How far it is from a place on the surface straight to the other side; at most about a cell.
+  /// Returns the distance from a place on the surface straight to the other side; at most about a
+  /// cell.
   double through(const Vec3d& p, const Vec3d& normal) const {
     const auto distance = [&](double t) { return shape_.distance(p - normal * t); };
     const double least = 1e-3 * dx_;

@@ -26,7 +26,7 @@ constexpr std::uint32_t parts = 8;
 constexpr std::array<std::string_view, 9> gradient_names{"f_00", "f_01", "f_02", "f_10", "f_11",
                                                          "f_12", "f_20", "f_21", "f_22"};
 
-/// How particle `p` is deformed; not at all where its material does not keep that.
+/// Returns the deformation of particle `p`; identity where its material does not keep that.
 template <class R>
 Mat3d deformation(const ParticleSetView<R>& particles, std::string_view material, std::size_t p) {
   if (!find_column(material, gradient_names.front())) return Mat3d::identity();

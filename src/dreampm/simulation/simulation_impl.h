@@ -153,7 +153,7 @@ struct Simulation::Impl {
   };
   std::vector<AttachedFiles> attached;
   void attach(OpenObserver open);
-  /// After the world was replaced by that of another moment.
+  /// Must be called after the world was replaced by that of another moment.
   void reopen_attached();
   /// Goes on with the files of another simulation.
   void take_attached(const Impl& from);
@@ -178,7 +178,7 @@ struct Simulation::Impl {
   };
   /// The particles of material m as they are now.
   std::shared_ptr<const View> view(std::size_t m) const;
-  /// By material, as they were asked for last; empty after a step or an edit.
+  /// The last views asked for, by material; empty after a step or an edit.
   mutable std::map<std::size_t, std::shared_ptr<const View>> views;
   mutable std::optional<ParticleFrame> frame_;
 

@@ -14,7 +14,7 @@ struct RestOfFrame {
   bool done;    ///< true if the step ends the frame
   double left;  ///< s: from the end of the step to that of the frame, or of the next frame where the step ends one
 };
-/// After a step of `dt` [s] from now.
+/// Returns the rest of the frame after a step of `dt` [s] from now.
 template <class R>
 RestOfFrame rest_of_frame(const World<R>& world, double dt);
 
@@ -23,7 +23,7 @@ RestOfFrame rest_of_frame(const World<R>& world, double dt);
 template <class R>
 void split_frame(World<R>& world, const StepBound& bound, double left);
 
-/// After a step of `dt` [s]: what is counted and how late it is.
+/// Advances the clock by a step of `dt` [s]: counts and time.
 template <class R>
 void advance_clock(World<R>& world, double dt, bool frame_done);
 

@@ -96,8 +96,8 @@ Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, co
   return free ? p : site;
 }
 
-/// How matter has to be shifted to lie in the box: not at all, and by a period where the box
-/// reaches over the end of a periodic axis.
+/// Returns the shifts that bring matter into the box: zero, and a period where the box reaches over
+/// the end of a periodic axis.
 template <class R>
 std::vector<Vec3d> shifts_into(const World<R>& world, const Box3d& box) {
   std::vector<Vec3d> shifts{Vec3d{}};

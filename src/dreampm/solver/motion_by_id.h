@@ -56,7 +56,7 @@ class MotionById {
       m.volume_ratio[first + i] = R(1);
     });
   }
-  /// In the order of the particles now, each of which must have been there.
+  /// Returns the motion in the present order of the particles, each of which must have been there.
   Motion<R> ordered(const World<R>& world) const {
     Motion<R> out;
     order(world, out);

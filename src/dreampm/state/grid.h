@@ -51,7 +51,7 @@ constexpr auto& viscosity(N& node) {
 
 /// Index of node (i, j, k), each in [0, 4), within its block.
 constexpr int node_index(int i, int j, int k) { return (i * block_width + j) * block_width + k; }
-/// From a node of a block to its neighbor along an axis.
+/// The step in index from a node of a block to its neighbor along an axis.
 inline constexpr int node_step[3] = {node_index(1, 0, 0), node_index(0, 1, 0), node_index(0, 0, 1)};
 
 /// Node number `n` of a block, relative to its first node.

@@ -40,7 +40,7 @@ struct Emitter {
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }
   double speed_at(double time) const { return value_at(std::span<const Key<double>>(speed), time); }
   Pose pose_at(double time) const { return path ? path->pose_at(time) : Pose{}; }
-  /// How the shape moves at that time.
+  /// Returns the motion of the shape at that time.
   Twist twist_at(double time) const {
     constexpr double moment = 1e-6;  // s
     return path ? path->twist_over(time, time + moment) : Twist{};
@@ -56,7 +56,7 @@ struct Emitter {
     const MotionPath::Fastest most = path->fastest_within(from, to);
     return inside + most.speed + most.spin * (length(own.center() - path->center) + 0.5 * length(own.size()));
   }
-  /// How far its places have moved since the start [m].
+  /// Returns the distance that its places have moved since the start [m].
   double moved(double time) const {
     return time > start ? mean_over(std::span<const Key<double>>(speed), start, time) * (time - start) : 0;
   }

@@ -53,8 +53,8 @@ constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
 /// The destination of particles that sinks take, in place of a neighbor.
 constexpr std::uint8_t nowhere = 27;
 
-/// For each of the 27 neighbors, and `nowhere`, the first that is the same block: on periodic axes
-/// of one or two blocks some are.
+/// The first neighbor that is the same block, for each of the 27 and `nowhere`: on periodic axes of
+/// one or two blocks some are.
 using Alike = std::array<std::uint8_t, 28>;
 template <class R>
 Alike first_alike(const World<R>& world) {

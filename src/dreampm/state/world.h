@@ -84,7 +84,8 @@ struct World {
   /// s: the step whose shares of own velocities weigh the carried grid's; 0 where no set has a
   /// memory.
   double kept_for = 0;
-  /// In which the forces of that step act, so that viscosity can; 0: they are baked, all at once.
+  /// Number of stages in which the forces of that step act, so that viscosity can; 0: they are
+  /// baked, all at once.
   int viscous_stages = 0;
   double dx = 0;              ///< m, a cell
   Vec3d origin;               ///< m, the scene position of node `low`
@@ -160,8 +161,8 @@ struct World {
     const bool any = std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.transfer.memory > 0; });
     kept_for = any ? dt : 0;
   }
-  /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by
-  /// its own velocity.
+  /// Returns the bound of a particle's speed over that of the fastest node: 2 where a transfer
+  /// moves matter by its own velocity.
   double reach() const {
     for (const auto& s : sets)
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
@@ -181,7 +182,7 @@ struct World {
       if (w.skin_friction) return true;
     return false;
   }
-  /// In how many ways walls and solids hold liquids by viscosity.
+  /// Returns the number of ways in which walls and solids hold liquids by viscosity.
   int viscous_contacts() const { return (holds_liquid(0) && has_skin_friction()) + needs_solid_field(); }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {
@@ -199,7 +200,7 @@ struct World {
     for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
     high = low + cells;
   }
-  /// Between the walls [m].
+  /// Returns the box between the walls [m].
   Box3d domain() const { return {node_position(low), node_position(high)}; }
   /// The largest speed of a collider's surface in the domain [m/s], from now to `ahead` [s] later.
   double collider_speed(double ahead) const {

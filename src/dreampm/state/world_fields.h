@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// Who needs a member.
+/// The uses of a member.
 struct FieldUse {
   bool copied = false;   ///< by as_world: what a scene gives before there is matter
   bool hashed = false;   ///< by state_hash: it decides the future
@@ -34,7 +34,7 @@ inline constexpr FieldUse setup_and_state{.copied = true, .hashed = true, .saved
 inline constexpr FieldUse state{.hashed = true, .saved = true};
 /// A column of particles, or nodes of the grid.
 inline constexpr FieldUse column{.hashed = true, .saved = true, .carried = true};
-/// For the ledger: it does not decide the future, but a run that goes on reports the same.
+/// A member for the ledger: it does not decide the future, but a run that goes on reports the same.
 inline constexpr FieldUse reported{.saved = true};
 /// Every step finds it anew.
 inline constexpr FieldUse not_state{};

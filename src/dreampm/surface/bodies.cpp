@@ -120,7 +120,7 @@ class Connectivity {
       }
     }
   }
-  /// With the leaves behind it along each axis.
+  /// Joins a leaf with the leaves behind it along each axis.
   void join_across(std::size_t leaf) {
     const auto own = static_cast<std::int32_t>(leaf);
     const Vec3i place = leaf < field_.leaves.size() ? field_.leaves[leaf] : field_.inside[leaf - field_.leaves.size()];

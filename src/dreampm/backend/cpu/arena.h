@@ -35,8 +35,9 @@ inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two by two rows of the
-/// arena. Without ArenaLoops::side_by_side they must also begin at four neighboring nodes along z.
+/// The way in which the lanes of a vector gather: together if their stencils begin in two by two
+/// rows of the arena. Without ArenaLoops::side_by_side they must also begin at four neighboring
+/// nodes along z.
 struct LaneGroup {
   bool together;
   bool wide[2];           ///< true if some stencils begin at the second, along x and y
@@ -93,7 +94,7 @@ struct BlockSplines {
   static constexpr int at(int across, int number, int part, int beside) {
     return (((across * node_numbers + number) * parts + part) * arena_width + beside) * row_floats;
   }
-  /// From a row to the next along x (0) or y.
+  /// Returns the step from a row to the next along x (0) or y.
   static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 

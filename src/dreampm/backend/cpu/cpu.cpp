@@ -193,7 +193,7 @@ class Cpu final : public Backend<float> {
     find_first_writers(world.grid.blocks.size());
   }
 
-  /// For each grid block, the first task (in color order) that writes it; that task zeroes it.
+  /// Finds the first task (in color order) that writes each grid block; that task zeroes it.
   void find_first_writers(std::size_t grid_blocks) {
     resize_for_overwrite(first_writes_, stencil_blocks_.size());
     claimed_.assign(grid_blocks, false);
@@ -210,7 +210,7 @@ class Cpu final : public Backend<float> {
     for (std::size_t g = 0; g < grid_blocks; ++g)
       if (!claimed_[g]) unwritten_.push_back(static_cast<std::uint32_t>(g));
   }
-  /// Before a task adds to that block of the grid.
+  /// Clears a block of the grid before a task adds to it.
   void clear(const World<float>& world, Task task, std::size_t block) {
     if (task == Task::step) {
       update_.gaps().clear_block(block);

@@ -4,7 +4,7 @@
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/math/lanes.h"
 
-/// For lambdas, which know no DM_FN.
+/// An attribute of lambdas, which cannot have DM_FN.
 #define DM_INLINED __attribute__((always_inline))
 
 namespace dreampm::DM_ISA {

@@ -237,7 +237,7 @@ float fastest_of(const BlockPass& of) {
   return largest_of(fastest2);
 }
 
-/// For the first `wanted` numbers of a node.
+/// Fits splines to the first `wanted` numbers of a node.
 template <int wanted>
 void fit(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
          float* splines) {

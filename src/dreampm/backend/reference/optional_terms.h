@@ -80,8 +80,8 @@ void scatter_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& 
   nodes.add(context.next.velocity_old[context.field], old.q, old.slope, old.mass);
 }
 
-/// Before a step in stages of viscosity: the momentum that stress gives in it, kept apart from that
-/// of the matter.
+/// Scatters the momentum of stress in a step in stages of viscosity, kept apart from that of the
+/// matter.
 template <class R>
 void scatter_stress(const SetContext<R>& context, const ParticleNodes<R>& nodes, const PassParticle<R>& particle) {
   Vec3<R> slopes[3];
@@ -98,8 +98,8 @@ void scatter_mixture(const SetContext<R>& context, const ParticleNodes<R>& nodes
   nodes.for_each([&](R w, std::size_t i) { share.add_to(context.next.mixture[i], w); });
 }
 
-/// In a stage of viscosity: the momentum that the viscous stress of the nodes' velocities gives in
-/// the whole step.
+/// Scatters the momentum that the viscous stress of the nodes' velocities gives in the whole step;
+/// for a stage of viscosity.
 template <class M, class R>
 void scatter_viscous_forces(const SetContext<R>& context) {
   const auto law = M::template Law<R>::from(context.set.values);

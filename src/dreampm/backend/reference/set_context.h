@@ -16,7 +16,7 @@ struct Surroundings {
   std::vector<StencilBlocks> blocks;  ///< of the grid, that the particles reach
   std::vector<ThinWalls> thin_walls;
 
-  /// After every change of the block lists.
+  /// Must be called after every change of the block lists.
   template <class R>
   void prepare(const World<R>& world) {
     obstacles.prepare(world);

@@ -26,7 +26,7 @@ struct GappedState {
   Mat3<R> f;
   R v;  ///< gaps: ln of the volume that bears no stress, >= 0
   DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : v; }
-  /// Without gaps, which take no room from a liquid.
+  /// Returns the volume ratio without gaps, which take no room from a liquid.
   DM_FN R volume_ratio() const { return determinant(f); }
 };
 

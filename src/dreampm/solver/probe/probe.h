@@ -54,7 +54,7 @@ class Probe {
   /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN:
   /// not defined now (the velocity where nothing is).
   virtual std::optional<std::vector<double>> sample(const ProbeContext<R>& now) = 0;
-  /// Its state from row to row, for a checkpoint.
+  /// Returns its state from row to row, for a checkpoint.
   virtual std::vector<double> memory() const { return {}; }
   virtual void restore(const std::vector<double>&) {}
 };

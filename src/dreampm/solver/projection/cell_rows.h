@@ -60,7 +60,7 @@ class CellRows {
 
   /// The length of an array over all rows.
   std::size_t size() const { return row_count_ * row_cells; }
-  /// In the order of their memory.
+  /// Returns the rows in the order of their memory.
   std::span<const Row> rows() const { return rows_; }
   /// Sets what belongs to no cell in an array over all rows.
   template <class T>

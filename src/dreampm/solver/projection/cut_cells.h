@@ -153,7 +153,8 @@ class CutCells {
     if (found == blocks_.end() || !found->second) return;
     grid.cells.for_block(block, [&](std::size_t n, std::size_t place) { body(*found->second, n, place); });
   }
-  /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
+  /// Returns the vector from the low corner of a cell to the middle of the closed part of its low
+  /// face [cells].
   static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;

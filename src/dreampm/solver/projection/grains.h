@@ -33,15 +33,16 @@ template <class R>
 class Grains {
  public:
   bool any() const { return any_; }
-  /// After particles_to_grid: what grains are to cells and faces.
+  /// Finds the shares of grains in cells and faces; after particles_to_grid.
   void to_grid(const World<R>& world, MacGrid<R>& grid);
-  /// After mix_velocities and find_depths: on faces with grains the free velocity becomes that of
-  /// the volume of both, after `kick` [s] of drag, and the lightness what the pressure changes of
-  /// it.
+  /// Mixes velocities; after mix_velocities and find_depths. On faces with grains the free velocity
+  /// becomes that of the volume of both, after `kick` [s] of drag, and the lightness becomes the
+  /// change of it by pressure.
   void mix(const World<R>& world, MacGrid<R>& grid, double kick);
-  /// After apply_pressure: the velocities of faces become those of the liquid alone. Particles of
-  /// grains get what the pressure and the drag change of their velocity and its slope, and
-  /// `pushes`. Gravity gives `gained` [m/s]; `lasts`: of cells, what lasts of the pressure.
+  /// Separates liquid and grains; after apply_pressure. The velocities of faces become those of the
+  /// liquid alone. Particles of grains get the change of their velocity and its slope by pressure
+  /// and drag, and `pushes`. Gravity gives `gained` [m/s]; `lasts`: of cells, the lasting part of
+  /// the pressure.
   void part(World<R>& world, MacGrid<R>& grid, const Vec3d& gained, const LargeVector<R>& lasts, Pushes<R>& pushes);
 
  private:

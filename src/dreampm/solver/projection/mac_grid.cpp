@@ -30,7 +30,7 @@ void mark_matter(const World<R>& world, CellRows& cells) {
 /// The number of layers of faces beside liquid to which velocities are extended
 /// (extend_velocities).
 constexpr int extended_layers = 2;
-/// From liquid to the cells that colliders cut which it may fill (find_depths).
+/// Number of cells from liquid to cut cells that it may fill (find_depths).
 constexpr int filled_by_colliders = 4;
 
 }  // namespace

@@ -158,7 +158,8 @@ struct MacGrid {
   }
 };
 
-/// From the low corner of a cell to the middle of its low or high face of an axis [cells].
+/// Returns the vector from the low corner of a cell to the middle of its low or high face of an
+/// axis [cells].
 inline Vec3d face_middle(int axis, bool high) {
   Vec3d middle{0.5, 0.5, 0.5};
   middle[axis] = high ? 1 : 0;

@@ -68,7 +68,7 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
   }
 }
 
-/// By sets of a world and their particles [m/s]: what a pressure that lasts gives them in a step.
+/// The velocity that a lasting pressure gives to particles in a step, by set and particle [m/s].
 /// Explicit steps spread it over their time, where given at once it would tear them, or throw them
 /// up to fall again; and take it out at the end, so that it changes no momentum.
 template <class R>

@@ -50,16 +50,15 @@ class PressureSolver {
 
   explicit PressureSolver(const MultigridKernels<R>& kernels = projection_kernels<R>("auto").multigrid)
       : kernels_(kernels) {}
-  /// Before the matrix: arrays over `cells`, all of them 0. `cells` must stay as it is until the
-  /// next call. `longest`: cells along the longest axis of the domain.
+  /// Sizes the arrays over `cells`, all of them 0; before the matrix is filled. `cells` must stay
+  /// as it is until the next call. `longest`: cells along the longest axis of the domain.
   void begin(const CellRows& cells, int longest);
-  /// To be filled: diagonal, low, b, and rows.
+  /// Returns the matrix to be filled: diagonal, low, b, and rows.
   PressureLevel<R>& matrix() { return levels_.front(); }
-  /// After the matrix is filled: that of the coarser levels.
+  /// Sets up the coarser levels; after the matrix is filled.
   void set_up();
-  /// After the matrix is filled: finds the liquid that has no surface, such as that of a full
-  /// vessel. Its pressure is known but for a constant, and only where what flows in is what flows
-  /// out.
+  /// Finds the liquid that has no surface, such as that of a full vessel; after the matrix is
+  /// filled. Its pressure is known but for a constant, and only where inflow and outflow are equal.
   void find_pockets();
   /// Makes the right side one that has a solution.
   void balance_pockets();

@@ -62,7 +62,7 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   grid.wrap(v);
 }
 
-/// How full a cell is: of its pores, where grains are.
+/// Returns the filled part of a cell: of its pores, where grains are.
 template <class R>
 R filling(const MacGrid<R>& grid, std::size_t c) {
   if (grid.grain_volume.empty()) return grid.density[c];

@@ -37,8 +37,8 @@ void find_depths(MacGrid<R>& grid, double way);
 template <class R>
 void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix);
 
-/// By how much a pressure pulls, in the units of MacGrid::impulse, where matter leaves walls, in
-/// the order of World::walls, and colliders, in that of World::colliders.
+/// The pull of a pressure, in the units of MacGrid::impulse, at which matter leaves walls, in the
+/// order of World::walls, and colliders, in that of World::colliders.
 struct Leaving {
   static constexpr double never = std::numeric_limits<double>::infinity();
   std::array<double, 6> walls;

@@ -27,7 +27,7 @@ constexpr double least_solid_mass = 1e-6;
 /// Parts of a step, between which matter is pushed.
 constexpr int push_parts = 4;
 
-/// By ids: where each stands.
+/// Returns the place of each id in the list.
 std::vector<std::uint32_t> places_of(const std::vector<std::uint32_t>& ids) {
   std::vector<std::uint32_t> place;
   for (std::size_t p = 0; p < ids.size(); ++p) {

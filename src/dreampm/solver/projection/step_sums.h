@@ -15,10 +15,10 @@ struct StepScale {
   Vec3d kick;           ///< m/s, what gravity gave
 };
 
-/// After velocities are extended: what walls and colliders gave to the liquid. Of walls it is what
-/// their faces stop, and the pressure of the cells beside them; of colliders the pressure over the
-/// parts of faces that they close, as it is at their surface. What a collider hides of a wall is
-/// the collider's. Of both also what viscosity did.
+/// Adds the impulses of walls and colliders on the liquid; after velocities are extended. Walls
+/// give what their faces stop, and the pressure of the cells beside them; colliders give the
+/// pressure over the parts of faces that they close, as it is at their surface. The part of a wall
+/// that a collider hides is the collider's. Both include viscosity.
 template <class R>
 void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Viscosity<R>& viscosity,
                  const StepScale& scale, GridStats& to);
@@ -27,7 +27,7 @@ struct FaceSums {
   EnergySums energy;
   Vec3d moment{};  ///< of all matter: mass times place [kg m]
 };
-/// After velocities are extended.
+/// Returns the sums over faces; after velocities are extended.
 template <class R>
 FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& scale);
 

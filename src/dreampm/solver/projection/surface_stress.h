@@ -64,7 +64,8 @@ class SurfaceStress {
   const Field& pull() const { return pull_; }
 
  private:
-  /// By the last pressure, of a cell or, where it is new, of those beside it.
+  /// True if the last pressure, of a cell or, where the cell is new, of those beside it, was
+  /// positive.
   static bool was_pressed(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
     R pressure = grid.impulse[at.own + l];
     if (pressure == R(0))

@@ -25,7 +25,7 @@ class ViscousBodies {
 
   // Vectors of the solve, one Six a body.
 
-  /// From the forces on faces and the stresses of cells, those on bodies: J f.
+  /// Sums the forces on faces and the stresses of cells to those on bodies: J f.
   void gather(const Faces& f, const SurfaceStress<R>& surfaces, std::vector<Six>& bodies) const;
   /// Velocities of faces from those of bodies, and the faces that have them: J^T V.
   void scatter(const std::vector<Six>& bodies, Faces& u) const;
@@ -35,7 +35,7 @@ class ViscousBodies {
   void add_flow(const std::vector<Six>& bodies, SurfaceStress<R>& surfaces) const;
   /// M V, M over the mass of a cell of liquid; 0 in locked components.
   void weigh(const std::vector<Six>& velocities, std::vector<Six>& out) const;
-  /// By the inverse of M and of the stiffness of their faces.
+  /// Multiplies by the inverse of M and of the stiffness of their faces.
   void precondition(const std::vector<Six>& residual, std::vector<Six>& out) const;
   std::size_t size() const { return bodies_.size(); }
   /// Adds to the twists of the bodies.
