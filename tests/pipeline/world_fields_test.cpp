@@ -102,7 +102,7 @@ void fill_set(ParticleSet<double>& set, const std::string& name, const std::stri
   set.mass = 0.5, set.rest_volume = 0.25, set.transfer = {1, 0.9, 0};
   set.id = {first_id, first_id + 1, first_id + 2};
   set.block_start = {0, 2, 3};
-  for (auto* part : {&set.u, &set.own})
+  for (auto* part : {&set.u, &set.own_velocity})
     for (auto& axis : *part) axis = {0.5, 1.5, 2.5};
   for (auto& column : set.gradient) column = {0.25, 0.5, 0.75};
   set.carries_motion = true;
@@ -205,7 +205,7 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   world.sets.pop_back(), world.colliders.clear();
   world.sets[0].transfer = {};
   world.sets[0].carries_motion = false;
-  for (auto& axis : world.sets[0].own) axis.clear();
+  for (auto& axis : world.sets[0].own_velocity) axis.clear();
   for (auto& column : world.sets[0].gradient) column.clear();
   visit_nodes(world.grid, [&](const auto& field, auto& nodes) {
     if (field.name != "nodes") nodes.clear();
@@ -214,7 +214,7 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   EXPECT_EQ(state_hash(back), state_hash(world));
   visit_nodes(back.grid,
               [&](const auto& field, const auto& nodes) { EXPECT_EQ(nodes.empty(), field.name != "nodes"); });
-  EXPECT_TRUE(back.sets[0].own[0].empty());
+  EXPECT_TRUE(back.sets[0].own_velocity[0].empty());
 }
 
 /// A file that is whole may still be of another version, or of a program.

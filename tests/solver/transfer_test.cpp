@@ -208,9 +208,9 @@ TEST(Transfer, ApicIsTheSameBesideAsflipAndStoresNothing) {
     return w;
   };
   const World<float> plain = made(false), mixed = made(true);
-  EXPECT_TRUE(plain.grid.velocity_old[0].empty() && plain.sets[1].own[0].empty());
-  EXPECT_TRUE(mixed.sets[0].own[0].empty());
-  EXPECT_EQ(mixed.sets[1].own[0].size(), mixed.sets[1].size());
+  EXPECT_TRUE(plain.grid.velocity_old[0].empty() && plain.sets[1].own_velocity[0].empty());
+  EXPECT_TRUE(mixed.sets[0].own_velocity[0].empty());
+  EXPECT_EQ(mixed.sets[1].own_velocity[0].size(), mixed.sets[1].size());
   const auto x = positions_by_id(plain), y = positions_by_id(mixed);
   double elastic = 0, snow = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -114,7 +114,7 @@ using Columns = std::vector<LargeVector<float>>;
 Columns columns_of(const ParticleSet<float>& set) {
   Columns all(set.u.begin(), set.u.end());
   all.insert(all.end(), set.state.begin(), set.state.end());
-  all.insert(all.end(), set.own.begin(), set.own.end());
+  all.insert(all.end(), set.own_velocity.begin(), set.own_velocity.end());
   return all;
 }
 

@@ -208,8 +208,8 @@ struct PlaneCopy {
   DM_FN PlaneCopy(const Node<R>* first, int axis) {
     for (int n = 0; n < plane_nodes; ++n) nodes[n] = first[node_in_plane(axis, n)];
   }
-  /// Puts those of `some`, a bit each, back.
-  DM_FN void put(Node<R>* first, int axis, unsigned some) const {
+  /// Writes the nodes of `some`, a bit each, back.
+  DM_FN void store(Node<R>* first, int axis, unsigned some) const {
     for (; some; some &= some - 1) {
       const int n = std::countr_zero(some);
       first[node_in_plane(axis, n)] = nodes[n];
@@ -247,7 +247,7 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, ImpulseSu
     Row::store(after, m, inners.nodes + n);
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
   }
-  inners.put(planes.inners, axis, folded);
+  inners.store(planes.inners, axis, folded);
   impulses += sum_of<Row>(given);
   return static_cast<std::uint16_t>(folded);
 }
@@ -272,7 +272,7 @@ DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
     gained2 += m * (dot(after, after) - dot(before, before));
   }
-  ghosts.put(planes.ghosts, axis, folded);
+  ghosts.store(planes.ghosts, axis, folded);
   impulses += sum_of<Row>(given);
   return 0.5 * static_cast<double>(Row::sum(gained2));
 }

@@ -244,7 +244,7 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
       const Vec3d momentum = s.velocity * set.mass;
       entered += {1, set.mass, momentum, angular_momentum(set, world.dx, s.position, s.velocity, s.gradient),
                   kinetic_energy(set, world.dx, s.velocity, s.gradient) - set.mass * dot(gravity, s.position)};
-      if (set.has_own()) world.kept_kinetic_energy += kinetic_energy(set, world.dx, s.velocity, s.gradient);
+      if (set.has_own_velocity()) world.kept_kinetic_energy += kinetic_energy(set, world.dx, s.velocity, s.gradient);
     }
   }
   return entered;

@@ -19,7 +19,7 @@ std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& se
   if (set.carries_motion) {
     Mat3d c{};
     for (int n = 0; n < 9; ++n) c(n / 3, n % 3) = static_cast<double>(set.gradient[static_cast<std::size_t>(n)][p]);
-    return {static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c};
+    return {static_cast<Vec3d>(Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}), c};
   }
   const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
   const Vec3i first =

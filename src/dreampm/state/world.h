@@ -45,14 +45,14 @@ struct ParticleSet {
   /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a
   /// sort, in (-1, 5) until the next.
   std::array<LargeVector<R>, 3> u;
-  std::vector<LargeVector<R>> state;  ///< the material's columns
-  std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where it is kept, else empty
+  std::vector<LargeVector<R>> state;           ///< the material's columns
+  std::array<LargeVector<R>, 3> own_velocity;  ///< velocity [m/s], where it is kept, else empty
   /// C [1/s], dv_a/dx_b in column 3 a + b; where the set carries its motion, else empty.
   std::array<LargeVector<R>, 9> gradient;
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }
-  bool has_own() const { return carries_motion || transfer.keeps_velocity(); }
+  bool has_own_velocity() const { return carries_motion || transfer.keeps_velocity(); }
   /// The edge of the cube that a particle takes at rest [m].
   double spacing() const { return std::cbrt(rest_volume); }
 };

@@ -142,8 +142,8 @@ auto fields_of(W& world) {
 template <MaybeConst<ParticleSet> S>
 auto fields_of(S& set) {
   using namespace field_use;
-  auto& [name, material, values, liquid, mass, rest_volume, transfer, carries_motion, id, u, columns, own, gradient,
-         block_start] = set;
+  auto& [name, material, values, liquid, mass, rest_volume, transfer, carries_motion, id, u, columns, own_velocity,
+         gradient, block_start] = set;
   return std::tuple{entry<setup>("name", name),
                     entry<setup>("material", material),
                     entry<setup>("values", values),
@@ -156,7 +156,7 @@ auto fields_of(S& set) {
                     entry<state>("block_start", block_start),
                     entry<column>("u", u),
                     entry<column>("state", columns),
-                    entry<sparse(column)>("own", own, [](const auto& s) { return s.has_own(); }),
+                    entry<sparse(column)>("own", own_velocity, [](const auto& s) { return s.has_own_velocity(); }),
                     entry<sparse(column)>("gradient", gradient, [](const auto& s) { return s.carries_motion; })};
 }
 

@@ -234,7 +234,8 @@ class Cpu final : public Backend<float> {
       p.pass.own_field = world.field_of(set) == 1;
       p.pass.by_volume = world.measures_by_volume(world.field_of(set));
       for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
-      for (std::size_t a = 0; a < 3; ++a) p.pass.own[a] = set.transfer.keeps_velocity() ? set.own[a].data() : nullptr;
+      for (std::size_t a = 0; a < 3; ++a)
+        p.pass.own_velocity[a] = set.transfer.keeps_velocity() ? set.own_velocity[a].data() : nullptr;
       for (std::size_t c = 0; c < set.state.size(); ++c) p.pass.state[c] = set.state[c].data();
       if (motion) {
         auto& m = motion->sets[s];
@@ -352,8 +353,8 @@ class Cpu final : public Backend<float> {
         pass.clearance_in = colliders ? arena.clearance_in.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
-        pass.velocity_old_in = whole && pass.own[0] ? arena.velocity_old_in[field].v.data() : nullptr;
-        pass.velocity_old_out = whole && pass.own[0] ? arena.velocity_old_out[field].nodes() + to : nullptr;
+        pass.velocity_old_in = whole && pass.own_velocity[0] ? arena.velocity_old_in[field].v.data() : nullptr;
+        pass.velocity_old_out = whole && pass.own_velocity[0] ? arena.velocity_old_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
             if (thin.any()) find_distances(thin, s, pass);

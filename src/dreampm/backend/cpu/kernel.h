@@ -55,7 +55,7 @@ struct BlockPass {
   Node<float>* velocity_old_out;  ///< as in OldVelocityTerm, added to; null unless the set keeps velocities
   Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];                    ///< whole columns
-  float* own[3];                  ///< velocities that the set keeps, or null
+  float* own_velocity[3];         ///< velocities that the set keeps, or null
   float* state[most_state_columns];
   std::size_t begin, end;  ///< particles of the block
   PrefetchHints hints;     ///< of the set's field

@@ -66,12 +66,13 @@ bool keeps_velocity(const SetContext<R>& context) {
 template <class R>
 void gather_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& nodes, std::size_t p, G2PResult<R>& g) {
   const Nodes<R>& old = context.world.grid.velocity_old[context.field];
-  g.own_velocity = {context.set.own[0][p], context.set.own[1][p], context.set.own[2][p]};
+  g.own_velocity = {context.set.own_velocity[0][p], context.set.own_velocity[1][p], context.set.own_velocity[2][p]};
   g.velocity_old = nodes.sum([&](std::size_t i) { return vector_of(old[i]); });
 }
 template <class R>
 void store_own_velocity(const SetContext<R>& context, std::size_t p, const PassParticle<R>& particle) {
-  for (std::size_t a = 0; a < 3; ++a) context.set.own[a][p] = particle.scattered.own_velocity[static_cast<int>(a)];
+  for (std::size_t a = 0; a < 3; ++a)
+    context.set.own_velocity[a][p] = particle.scattered.own_velocity[static_cast<int>(a)];
 }
 template <class R>
 void scatter_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& nodes,

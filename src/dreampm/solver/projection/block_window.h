@@ -43,7 +43,7 @@ class Window {
 /// Loads the motion of a particle along an axis, as given_to_faces() takes it.
 template <class R>
 DM_FN void motion_along(const ParticleSet<R>& set, std::size_t p, std::size_t axis, R dx, Four<R>& motion) {
-  motion = Four<R>{set.own[axis][p], set.gradient[3 * axis][p] * dx, set.gradient[3 * axis + 1][p] * dx,
+  motion = Four<R>{set.own_velocity[axis][p], set.gradient[3 * axis][p] * dx, set.gradient[3 * axis + 1][p] * dx,
                    set.gradient[3 * axis + 2][p] * dx};
 }
 

@@ -51,7 +51,7 @@ DM_FN void give_some(const BlockGiving<Scalar<S>>& block, std::size_t p, int n, 
     Vec3<S> rise;
     for (int t = 0; t < 3; ++t) rise[t] = Row::load(from.gradient[3 * a + t] + p, n) * dx;
     Samples<S> momenta, weights;
-    given_to_faces(place.way_of_faces(a), Row::load(from.own[a] + p, n), rise, momenta, weights);
+    given_to_faces(place.way_of_faces(a), Row::load(from.own_velocity[a] + p, n), rise, momenta, weights);
 #pragma GCC unroll 4
     for (int c = 0; c < 4; ++c) {
       const S(&m)[2] = momenta.at[c >> 1][c & 1], (&w)[2] = weights.at[c >> 1][c & 1];

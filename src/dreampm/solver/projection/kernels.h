@@ -31,7 +31,7 @@ struct Beyond {
 /// are.
 template <class T>
 struct BlockColumns {
-  T *u[3], *own[3], *gradient[9];  ///< whole columns
+  T *u[3], *own_velocity[3], *gradient[9];  ///< whole columns
   std::size_t begin, end;
 };
 

@@ -115,7 +115,7 @@ void give_changes(const World<R>& world, ParticleSet<R>& set, const CellRows& ce
                   std::vector<Vec3<R>>& pushes) {
   const R per_cell = static_cast<R>(1 / world.dx);
   for_changes(world, set, cells, gained, [&](std::size_t p, std::size_t a, const Four<R>& gain) {
-    set.own[a][p] += gain[0];
+    set.own_velocity[a][p] += gain[0];
     for (std::size_t t = 0; t < 3; ++t) set.gradient[3 * a + t][p] += gain[static_cast<int>(t) + 1] * per_cell;
   });
   pushes.assign(set.size(), Vec3<R>{});

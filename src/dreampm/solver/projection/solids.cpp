@@ -201,7 +201,7 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
     ParticleSet<R>& set = w.sets.emplace_back(std::move(world.sets[s]));
     set.carries_motion = false;
     take_carried_motion(set, Vec3<R>{}, motion_.sets.emplace_back());
-    for (auto& column : set.own) column.clear();
+    for (auto& column : set.own_velocity) column.clear();
     for (auto& column : set.gradient) column.clear();
   }
 }
@@ -340,7 +340,8 @@ void SolidSteps<R>::remember(const World<R>& world, const Motion<R>& motion) {
     if (is_projected(set) || motion.sets[s].velocity.size() != set.size()) continue;
     for (std::size_t p = 0; p < set.size(); ++p) {
       if (set.id[p] >= shown_[s].size()) shown_[s].resize(set.id[p] + std::size_t{1});
-      shown_[s][set.id[p]] = motion.sets[s].velocity[p] - Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]};
+      shown_[s][set.id[p]] =
+          motion.sets[s].velocity[p] - Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]};
     }
   }
 }

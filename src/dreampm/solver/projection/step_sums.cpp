@@ -233,7 +233,9 @@ double kinetic_of(const World<R>& world) {
       Mat3d c;
       for (std::size_t n = 0; n < 9; ++n)
         c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
-      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
+      to += kinetic_energy(
+          set, world.dx,
+          static_cast<Vec3d>(Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}), c);
     });
   }
   return sum;

@@ -160,7 +160,7 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
     // It keeps its own motion, and falls.
     for (int a = 0; a < 3; ++a) {
       const auto axis = static_cast<std::size_t>(a);
-      taken.v[a] = select(known, taken.v[a], Row::load(to.own[axis] + p, n) + S(block.kick[a]));
+      taken.v[a] = select(known, taken.v[a], Row::load(to.own_velocity[axis] + p, n) + S(block.kick[a]));
       for (int t = 0; t < 3; ++t)
         taken.slope[a][t] =
             select(known, taken.slope[a][t], Row::load(to.gradient[3 * axis + static_cast<std::size_t>(t)] + p, n));
@@ -170,7 +170,7 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
   S slope2(R(0));
 #pragma GCC unroll 3
   for (int a = 0; a < 3; ++a) {
-    Row::store(taken.v[a], to.own[a] + p, n);
+    Row::store(taken.v[a], to.own_velocity[a] + p, n);
 #pragma GCC unroll 3
     for (int t = 0; t < 3; ++t) {
       const S slope = taken.slope[a][t];
