@@ -47,7 +47,7 @@ struct MaterialState {
 /// The particles that came in as a body, whatever has happened to them since.
 struct BodyState {
   std::string material;          ///< the material of the body
-  std::uint32_t first_id = 0;    ///< its particles have the ids from this one on,
+  std::uint32_t first_id = 0;    ///< ids of its particles begin here
   std::uint32_t count = 0;       ///< number of these particles
   std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };

@@ -59,9 +59,9 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
-/// The lowest node at which stencils of a block of particles begin, docs/images/blocks.svg: at it
-/// or one of the next three along each axis, and before the next sort at most one before or after
-/// those.
+/// Returns the lowest node at which stencils of a block of particles begin at a sort; they begin at
+/// it or one of the next three along each axis. Until the next sort they may begin one node before
+/// or after these four. docs/images/blocks.svg shows it.
 constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
 
 /// The lexicographic order of blocks: x first, then y, then z.

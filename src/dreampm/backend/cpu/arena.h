@@ -11,8 +11,8 @@
 
 namespace dreampm {
 
-/// The most blocks of particles, consecutive along z, that share an arena. Nodes of an arena are
-/// counted from its first, which is the first of the grid's block of the run's first block.
+/// The most blocks of particles, consecutive along z, that share an arena. Its nodes are counted
+/// from the first node of the grid's block with the number of the first block of particles.
 inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
@@ -23,7 +23,7 @@ struct Extent {
   bool known() const { return low.x <= high.x; }
 };
 
-/// The rows that the stencils of an arena's particles reach: few of spray.
+/// The rows that the stencils of an arena's particles reach; for spray these are few.
 struct ArenaReach {
   int low[2] = {arena_width, arena_width}, high[2] = {-1, -1};  ///< rows along x and y
   bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
@@ -41,12 +41,12 @@ inline int first_node(float u) {
 struct LaneGroup {
   bool together;
   bool wide[2];           ///< true if some stencils begin at the second, along x and y
-  std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
+  std::int16_t first[3];  ///< first row along x and y, and first of the four nodes where that counts
 };
 
 /// The place of an arena's nodes in the grid.
 struct ArenaPlace {
-  int blocks;  ///< of the grid along z: one more than blocks of particles
+  int blocks;  ///< number of blocks of the grid along z: one more than blocks of particles
   /// The grid's blocks in each of the 2 x 2 pencils along z; BlockList::none where no particle can
   /// come.
   std::int32_t pencil[4][arena_blocks + 1];
