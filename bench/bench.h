@@ -47,7 +47,7 @@ struct StepBenchResult {
   std::vector<double> windows, cpu_windows;  ///< ns per particle-step of each
 };
 
-/// What the machine itself can do at most, now.
+/// Upper bounds of the machine itself, measured now.
 struct Ceilings {
   double fma_gflops = 0;  ///< multiply-adds of float in all lanes, each counted twice [1e9/s]
   double triad_gb_s = 0;  ///< a = b + s c over memory far larger than caches, three floats an element [1e9 B/s]
@@ -80,12 +80,12 @@ struct BenchRow {
   std::string note;             ///< limits, floors, shares
 };
 
-/// What a particle-step of the projection costs, in calm water and in a splash: with one thread,
-/// and where there are more also with all of them. Takes particles or cells, threads and windows of
-/// the options. Throws InputError for one that it does not have.
+/// Measures the cost of a particle-step of the projection, in calm water and in a splash: with one
+/// thread, and where there are more also with all of them. Takes particles or cells, threads and
+/// windows of the options. Throws InputError for one that it does not have.
 std::vector<BenchRow> bench_projection(const StepBenchOptions& options);
 
-/// What may come beside the steps.
+/// A source, sink, collider or edit beside the steps.
 enum class Tap {
   emitter,  ///< brings matter in from above
   sink,     ///< takes what comes to the middle of the floor
@@ -93,8 +93,8 @@ enum class Tap {
   edit      ///< a value of the material changes before every step
 };
 
-/// Of each tap three rows: the step without it, the step with it, and what it costs in shares of
-/// the step [%]. Both start from the same matter in motion, and take turns. Takes all of the
+/// Measures three rows for each tap: the step without it, the step with it, and its cost in shares
+/// of the step [%]. Both start from the same matter in motion, and take turns. Takes all of the
 /// options but droplets. Throws InputError for one that it does not have.
 std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vector<Tap>& taps);
 

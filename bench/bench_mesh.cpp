@@ -7,7 +7,7 @@
 namespace dreampm {
 
 TriMesh lobed_ball(const Vec3d& middle, double radius, int faces) {
-  // Of n rows of n quads the first and the last are triangles.
+  // The first and the last of n rows of n quads are triangles.
   const auto rows = static_cast<std::uint32_t>(std::lround(0.5 * (1 + std::sqrt(1.0 + 2 * faces)))), columns = rows;
   TriMesh mesh;
   const auto add = [&](std::uint32_t i, std::uint32_t j) {

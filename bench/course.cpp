@@ -111,8 +111,8 @@ Timing Course::run(const std::string& isa, const Pace& pace) const {
   double total = 0;
   long long all_steps = 0;
   {
-    // What belongs to the backend has to be warm too; its first sort then falls into one window,
-    // not the median.
+    // A copy of the world, as the backend's own data has to be warm too; its first sort then falls
+    // into one window, not the median.
     World<float> world = *start_;
     backend.attach(world);
     for (int i = 0; i < 2; ++i) step<float>(world, backend, nullptr);

@@ -20,8 +20,9 @@ struct Timing {
   double steps_per_sort = 0;
   double median() const;
   double cpu_median() const;
-  /// By the clock where several threads share the work; of one thread its processor time, which is
-  /// the same on a quiet machine and leaves out what other programs take on a busy one.
+  /// Returns the times by the clock where several threads share the work; for one thread its
+  /// processor time, which is the same on a quiet machine and leaves out what other programs take
+  /// on a busy one.
   const std::vector<double>& fair(int threads) const { return threads == 1 ? cpu_windows : windows; }
 };
 
@@ -55,7 +56,7 @@ class Course {
   double memory_ = 0;
 };
 
-/// What the arrays of a world hold, and the second grid of a step, over particles [B].
+/// Returns the size of a world's arrays, and of the second grid of a step, over particles [B].
 double bytes_per_particle(const World<float>& world);
 
 }  // namespace dreampm

@@ -70,7 +70,7 @@ std::vector<BenchRow> bench_edits(const EditBenchOptions& options) {
     rows.push_back({what, simulation.particle_count(), simulation.isa(), options.threads, median_of(times), "ms",
                     spread_of(times), note});
   };
-  // What forms the grid is not the edit's: it is measured apart, and steps lie between.
+  // The formation of the grid is not part of the edit: it is measured apart, and steps lie between.
   const auto measure = [&](const char* what, const std::function<void(int)>& edit,
                            const std::function<void()>& after = {}, const std::string& note = {}) {
     std::vector<double> times;

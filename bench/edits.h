@@ -1,4 +1,4 @@
-// What edits of a running simulation cost: gravity, a parameter, a wall, a crate.
+// The cost of edits of a running simulation: gravity, a parameter, a wall, a crate.
 #pragma once
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// What a frame's files and sums cost beside its steps.
+// The cost of a frame's files and sums beside its steps.
 #pragma once
 #include <string>
 

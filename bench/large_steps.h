@@ -1,4 +1,4 @@
-// What a particle-step of the projection costs.
+// The cost of a particle-step of the projection.
 #pragma once
 #include <memory>
 #include <string_view>

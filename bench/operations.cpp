@@ -12,7 +12,7 @@ OperationCount count(const World<float>& world) {
   const ParticleSet<float>& set = world.sets.front();
   const auto law = M::template Law<float>::from(set.values);
   SetStep<float> step = set_step(world, set, world.dt_next, world.dt_next);
-  // As most steps, which relax no volume.
+  // Most steps relax no volume.
   step.volume_relaxation = 0;
   const BlockWalls<float> walls = block_walls(world, world.particle_blocks[world.particle_blocks.size() / 2], false);
   OperationCount counts;
@@ -37,11 +37,11 @@ OperationCount count(const World<float>& world) {
     const Moments<Counted> m = gather<Counted, M::info.liquid ? bend_along(c) : no_bends>(x, y, z, row_of(0, 0.1));
     g.v[c] = m.value;
     for (int a = 0; a < 3; ++a) g.affine_moment[a][c] = m.first_moment[a];
-    if constexpr (M::info.liquid) g.excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.excess);
+    if constexpr (M::info.liquid) g.affine_excess = mul_add(m.bend[c], affine_excess(from.t[c]), g.affine_excess);
   };
   gather_one.template operator()<0>(), gather_one.template operator()<1>(), gather_one.template operator()<2>();
   const double full = static_cast<double>(step.full);
-  if (measures<M>(step.volume_relaxation)) g.content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
+  if (measures<M>(step.volume_relaxation)) g.node_content = gather_value<Counted>(x, y, z, row_of(full, full / 8));
   StressResponse<Counted> response;
   bool pushed = false;
   const P2GTerms<Counted> s = particle_step<M, Counted>(law, step, walls, g, u, state, response, pushed);

@@ -13,7 +13,7 @@ namespace dreampm {
 /// the nodes, an eighth of a node a particle in the bulk, is not in it.
 OperationCount operations_of(const World<float>& world);
 
-/// Whether a multiply-add is one instruction in that set.
+/// True if a multiply-add is one instruction in that set.
 inline bool fuses(std::string_view isa) { return isa != "sse4"; }
 
 /// Bytes that a step has to move a particle if every column and node is read once and written once;

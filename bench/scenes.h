@@ -23,7 +23,8 @@ struct BenchScene {
 /// high, collapsing.
 BenchScene column_scene(const MaterialInfo& material, const Vec3i& cells);
 
-/// That many cells of it at rest, from wall to wall in a box half as high again.
+/// Returns a scene of that many cells of a material at rest, from wall to wall in a box half as
+/// high again.
 BenchScene tank_scene(const MaterialInfo& material, const Vec3i& cells);
 
 /// Drops of 8 particles in a cell each, 8 cells apart, so that no node takes part in two; falling.
@@ -32,7 +33,7 @@ BenchScene droplets_scene(const MaterialInfo& material, std::uint64_t count);
 /// A cube of `width`^3 cells that falls in the middle of a domain of `domain` cells.
 BenchScene drop_scene(const MaterialInfo& material, int width, const Vec3i& domain);
 
-/// Of that name. Throws InputError where there is none.
+/// Returns the material of that name. Throws InputError where there is none.
 const MaterialInfo& bench_material(const std::string& name);
 
 /// Throws InputError for a number of particles with which nothing can be measured.

@@ -1,4 +1,4 @@
-// What the frames of a scene of water cost by the projection beside explicit steps.
+// The cost of the frames of a scene of water by the projection beside explicit steps.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -8,7 +8,7 @@
 
 namespace dreampm {
 
-/// Of one solver, over all frames.
+/// The cost of one solver, over all frames.
 struct SolverCost {
   std::uint64_t steps = 0, particle_steps = 0;
   double cpu_seconds = 0;  ///< of steps alone: no files, sums of frames or hashes

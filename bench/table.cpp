@@ -193,7 +193,7 @@ void Table::projection() {
   for (BenchRow& row : bench_projection(options)) add(std::move(row));
 }
 
-/// What is not the steps of a column.
+/// The measurements beside the steps of a column.
 constexpr void (Table::* other_cases[])() = {&Table::droplets, &Table::domain, &Table::memory, &Table::frames,
                                              &Table::projection};
 

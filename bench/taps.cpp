@@ -34,7 +34,8 @@ std::shared_ptr<const Region> box(const Vec3d& low, const Vec3d& high) {
   return make_region(shape, bench_dx, {});
 }
 
-/// What the taps are placed by: the matter reaches from 0 to `size`, the box up to `top` [m].
+/// The measures by which taps are placed: the matter reaches from 0 to `size`, the box up to `top`
+/// [m].
 struct Room {
   Vec3d size;
   double top, reach;  ///< reach: half the width of a tap

@@ -1,4 +1,4 @@
-// What a step costs beside which matter comes in, goes out, meets a mesh that turns, or is edited.
+// The cost of a step beside which matter comes in, goes out, meets a mesh that turns, or is edited.
 #pragma once
 #include <cstdint>
 #include <memory>

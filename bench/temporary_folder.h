@@ -1,4 +1,4 @@
-// Where a bench writes what nobody keeps.
+// The folder for files of a bench that nobody keeps.
 #pragma once
 #include <unistd.h>
 

@@ -11,7 +11,7 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-/// What every measurement has to name.
+/// Returns the facts that every measurement has to name.
 Json with_machine(const Json& more) {
   Json all{{"machine", this_machine("", 0).cpu},
            {"cores", this_machine("", 0).cores},

@@ -38,7 +38,7 @@ std::string escaped(const std::string& text, std::string_view special) {
   return out;
 }
 
-/// In single quotes, as bash and zsh read it.
+/// Returns the text in single quotes, as bash and zsh read it.
 std::string quoted(const std::string& text) {
   std::string out = "'";
   for (const char c : text) c == '\'' ? out += "'\\''" : out += c;
@@ -76,7 +76,7 @@ std::string zsh_verb(const VerbFacts& v) {
   return text + "      esac ;;\n  esac\n}\n";
 }
 
-/// In single quotes, as fish reads it.
+/// Returns the text in single quotes, as fish reads it.
 std::string fish_quoted(const std::string& text) { return "'" + escaped(text, "\\'") + "'"; }
 
 std::string fish_verb(const VerbFacts& v) {
@@ -188,7 +188,8 @@ set -g __dreampm_verbs)";
 
 namespace {
 
-/// With the names of cases, which the parser leaves to a better message.
+/// Returns the facts of the verbs, with the names of cases, which the parser leaves to a better
+/// message.
 VerbFacts described(const CLI::App& app) {
   VerbFacts top = describe(app);
   for (VerbFacts& verb : top.verbs)

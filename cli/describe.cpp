@@ -17,7 +17,7 @@ std::vector<std::string> choices_in(const std::string& type) {
   return choices;
 }
 
-/// What CLI11 calls TEXT, FLOAT, INT, UINT.
+/// Returns the name of a type that CLI11 calls TEXT, FLOAT, INT, UINT.
 std::string value_text(const std::string& type) {
   return type.starts_with("TEXT") ? "TEXT" : type.starts_with("FLOAT") ? "NUMBER" : "N";
 }

@@ -5,7 +5,7 @@
 namespace dreampm::cli {
 namespace {
 
-/// What of a frame is exported.
+/// The parts of a frame that are exported.
 struct What {
   bool particles, surface, colliders;
 };

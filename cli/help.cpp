@@ -7,7 +7,7 @@
 namespace dreampm::cli {
 namespace {
 
-/// As it is typed: "--frames N", "SCENE".
+/// Returns the option as it is typed: "--frames N", "SCENE".
 std::string typed_text(const OptionFacts& o, bool is_word) {
   return "`" + o.names.back() + (is_word || o.value.empty() ? "" : " " + o.value) + "`";
 }

@@ -1,4 +1,4 @@
-// What the command uses of the library.
+// Headers of the library that the command uses.
 #pragma once
 #include "bench/bench.h"
 #include "dreampm/backend/registry.h"

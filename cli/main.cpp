@@ -18,12 +18,13 @@ int complain(const std::string& text, int code) {
   return code;
 }
 
-/// What stands before the first option: verbs, and what they take.
+/// Returns the words before the first option: verbs, and their arguments.
 std::vector<std::string> leading_words(int argc, char** argv) {
   return {argv + 1, std::find_if(argv + 1, argv + argc, [](const char* word) { return word[0] == '-'; })};
 }
 
-/// What was typed and not understood; an option gets the nearest one of its verb.
+/// Returns the message for words that were not understood; an option gets the nearest one of its
+/// verb.
 std::string extras_text(const CLI::App& app, const CLI::ExtrasError& e) {
   const CLI::App* verb = &app;
   while (!verb->get_subcommands().empty()) verb = verb->get_subcommands().front();
@@ -38,7 +39,7 @@ std::string extras_text(const CLI::App& app, const CLI::ExtrasError& e) {
   return e.what();
 }
 
-/// What to say of a line without a verb; nothing where there is one.
+/// Returns the message for a line without a verb; nothing where there is one.
 std::string without_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2) return "no verb; dreampm --help lists them";
   const std::string first = argv[1];

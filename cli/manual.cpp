@@ -6,7 +6,7 @@
 namespace dreampm::cli {
 namespace {
 
-/// As roff reads it: a hyphen that can be copied, and no line that begins like a request.
+/// Returns the text for roff: a hyphen that can be copied, and no line that begins like a request.
 std::string roff(const std::string& text) {
   std::string out;
   for (const char c : text) {

@@ -8,7 +8,7 @@ namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// What the typical step is given for.
+// The setting for which the typical step is given.
 constexpr double typical_dx = 0.01, typical_cfl = 0.5, typical_fall = 1;
 const double typical_speed = std::sqrt(2 * 9.81 * typical_fall);
 
@@ -31,7 +31,7 @@ Kind kind_of(const MaterialInfo& m, const Preset* preset) {
   }
   values.with_defaults(m.params);
   kind.density = values["density"];
-  // As a run derives it: the fastest matter compresses it by max_compression.
+  // The bulk modulus as a run derives it: the fastest matter compresses it by max_compression.
   if (m.find("bulk_modulus") && !values.has("bulk_modulus"))
     values.set("bulk_modulus", kind.density * typical_speed * typical_speed / values["max_compression"]);
   kind.facts = facts_of(m, values);
@@ -174,7 +174,7 @@ void print_pictures(const MaterialInfo& m) {
   fmt::print("{}\n{}\n{}\n\n", names, rule, pictures);
 }
 
-// What was read for each preset, and what could not be.
+// Sources of each preset, and values that could not be read.
 constexpr std::string_view where_from = R"(
 ## Where the presets come from
 

@@ -58,7 +58,7 @@ int play(const PlayArguments& args) {
   dreampm::play::PlayScene scene = dreampm::play::load_play_scene(args.what, static_cast<std::size_t>(args.preset - 1));
   if (args.size.empty() && scene.window) width = scene.window->width, height = scene.window->height;
   if (!args.headless) {
-    // What would fail at the end fails before the window opens.
+    // Checks that would fail at the end are made before the window opens.
     if (!args.record.empty()) check_replaceable(args.record);
     dreampm::play::play_in_window(
         std::move(scene), {options, width, height, args.ui_scale, args.particles, args.record, args.size.empty()});

@@ -163,7 +163,7 @@ class SchemaWriter {
     return {{"type", "object"}, {"required", {"type"}}, {"oneOf", types}};
   }
 
-  /// Which type it is the map below says: all of their keys.
+  /// Returns the schema of a map of any type, with the keys of all types.
   SchemaJson any_type(const MapInfo& info) {
     SchemaJson properties = SchemaJson::object(), types = SchemaJson::array();
     put_keys(properties, info.keys);
@@ -179,7 +179,7 @@ class SchemaWriter {
     return {{"type", "object"}, {"properties", properties}, {"additionalProperties", false}};
   }
 
-  bool overlay_ = false;  ///< whether keys are laid over others, so that none is required
+  bool overlay_ = false;  ///< true if keys are laid over others, so that none is required
   SchemaJson defs_ = SchemaJson::object();
 };
 

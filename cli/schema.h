@@ -15,7 +15,7 @@ std::string ledger_page();
 /// A JSON Schema (draft 2020-12) for scenes.
 std::string scene_json_schema();
 
-/// For std::visit: one function for each type.
+/// A visitor for std::visit: one function for each type.
 template <class... F>
 struct Overloaded : F... {
   using F::operator()...;

@@ -47,7 +47,7 @@ int run_cases(const ValidateArguments& a) {
   validate::Options options = a.options;
   options.level = a.full ? validate::Level::full : validate::Level::quick;
   const ThreadLimit threads(a.threads);
-  // What would fail after minutes of computing fails here.
+  // Checks that would fail after minutes of computing fail here.
   const auto cases = wanted(a, options.level);
   make_folder(a.out);
   check_replaceable(std::filesystem::path(a.out) / fmt::format("{}.svg", cases[0]->name));

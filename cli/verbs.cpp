@@ -97,7 +97,7 @@ std::vector<std::string> given(const std::vector<CLI::Option*>& options) {
 }
 
 bool names_run(const std::vector<std::string>& names, const std::vector<std::string>& of_files) {
-  // What is not there is taken for a run's folder unless it looks like a file.
+  // A name that does not exist is taken for a run's folder unless it looks like a file.
   const std::filesystem::path first = names[0];
   const bool folder = std::filesystem::is_directory(first) ||
                       (!std::filesystem::exists(first) && !first.has_extension() && names.size() == 1);

@@ -15,7 +15,7 @@
 
 namespace dreampm::cli {
 
-/// What the chosen verb does; its result is the exit code.
+/// The action of the chosen verb; its result is the exit code.
 using Action = std::function<int()>;
 
 #ifdef DM_APP
@@ -24,8 +24,8 @@ void add_bench_play(CLI::App& bench, Action& action);
 #else
 #define DM_APP_VERBS(VERB)
 #endif
-/// In the order of --help. A verb NAME is a row here, and a file of this folder that defines
-/// add_NAME.
+/// The verbs in the order of --help. A verb NAME is a row here, and a file of this folder that
+/// defines add_NAME.
 #define DM_VERBS(VERB) \
   VERB(make)           \
   DM_APP_VERBS(VERB)   \
@@ -82,11 +82,11 @@ const std::map<std::string, exchange::Up>& ups();
 /// The options that were given, by name.
 std::vector<std::string> given(const std::vector<CLI::Option*>& options);
 
-/// Whether `names` are the folder of a run, and not files. Throws InputError for an option that
+/// True if `names` are the folder of a run, and not files. Throws InputError for an option that
 /// only files take, and for a folder among others.
 bool names_run(const std::vector<std::string>& names, const std::vector<std::string>& of_files);
 
-/// Of "A-B", "A:B" or "A". Throws InputError.
+/// Returns the range of "A-B", "A:B" or "A". Throws InputError.
 std::pair<int, int> frame_range(const std::string& text);
 
 /// --threads, shared by the verbs that compute.

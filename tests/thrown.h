@@ -1,4 +1,4 @@
-// What a call throws, for tests of messages.
+// Returns the error that a call throws, for tests of messages.
 #pragma once
 #include <gtest/gtest.h>
 

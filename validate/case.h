@@ -1,5 +1,4 @@
-// What a validation case is, and what it reports. A case is one file in cases/ and one line in
-// cases.cpp.
+// A validation case and its report. A case is one file in cases/ and one line in cases.cpp.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +15,7 @@ enum class Level { quick, full };
 
 struct Options {
   Level level = Level::quick;
-  // Of the case stability:
+  // Options of the case stability:
   int draws = 0;  ///< how many; 0: those of the level
   std::uint64_t seed = 1;
   int draw = -1;   ///< only this one, from 0 on; -1: all
@@ -28,8 +27,8 @@ struct Attachment {
   std::string name, about, text;
 };
 
-/// How a case is set up: the matter and walls of a scene that it runs, or what was chosen for it,
-/// and why.
+/// The set-up of a case: the matter and walls of a scene that it runs, or a choice for it, with the
+/// reason.
 struct SetUp {
   std::string scene;  ///< empty: a choice
   std::string text;
@@ -84,7 +83,7 @@ struct Plot {
   std::vector<Curve> curves;
 };
 
-/// What a case is run with and what it reports into.
+/// A trial: the settings with which a case is run, and the report that it fills.
 class Trial {
  public:
   explicit Trial(const Options& options) : options_(options) {}
@@ -105,11 +104,11 @@ class Trial {
   /// reference says how wrong it has to be. Throws std::logic_error if there is no metric of that
   /// name with a gate, or the bound is no farther out.
   void control(std::string what, std::string_view metric, double value, std::optional<double> beyond = {});
-  /// What the scene of that name is made of. A case may run one several times with other sizes, or
-  /// wrong for a control: the first counts.
+  /// Adds the description of the scene of that name. A case may run a scene several times with
+  /// other sizes, or wrong for a control: the first counts.
   void set_up(std::string_view scene, std::string text);
-  /// What was chosen for this case beside its scenes, and why.
-  void chose(std::string text) { set_ups.push_back({{}, std::move(text)}); }
+  /// Adds a choice that was made for this case beside its scenes, with its reason.
+  void note_choice(std::string text) { set_ups.push_back({{}, std::move(text)}); }
   void attach(Attachment a) { attachments.push_back(std::move(a)); }
   void plot(Plot p) { plots.push_back(std::move(p)); }
   void cost(std::uint64_t steps) { particle_steps += steps; }

@@ -54,7 +54,7 @@ class Floater {
   Vec3d center() { return body().twist.center; }
   /// The speed of its fastest corner, bounded from above [m/s].
   double speed() { return length(body().twist.velocity) + length(body().twist.spin) * 0.5 * length(set_up.box); }
-  /// How far its axis (0, 1, 2) is off the vertical, up or down [degrees].
+  /// Returns the angle between its axis (0, 1, 2) and the vertical, up or down [degrees].
   double off_vertical(int axis) {
     Vec3d along{};
     along[axis] = 1;

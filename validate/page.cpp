@@ -31,7 +31,7 @@ std::vector<Section> sections_of(std::string_view page) {
   return all;
 }
 
-/// Where a case stands in the list; behind all of them where it is not there.
+/// Returns the place of a case in the list; the list's end where it is not there.
 std::size_t place_of(const std::string& name) {
   const auto all = all_cases();
   return static_cast<std::size_t>(std::find_if(all.begin(), all.end(), [&](const Case* c) { return c->name == name; }) -

@@ -28,7 +28,8 @@ std::string escaped(const std::string& text) {
   return out;
 }
 
-/// What is drawn, with a little room around it, and ticks in it at 1, 2 or 5 times a power of ten.
+/// An axis: the range that is drawn, with a little room around it, and ticks in it at 1, 2 or 5
+/// times a power of ten.
 struct Axis {
   double low, high, step, first;  ///< first: a tick
 
@@ -72,7 +73,7 @@ std::vector<Pixel> pixels_of(const Curve& curve, const Axis& x, const Axis& y) {
   return points;
 }
 
-/// How a curve is drawn.
+/// The pen with which a curve is drawn.
 struct Pen {
   const char* color;
   const char* line = "stroke-width=\"1.6\"";  ///< attributes
@@ -105,7 +106,7 @@ struct Legend {
   int hidden = 0;  ///< pieces of curves behind it
 };
 
-/// Where it hides least of the curves: corners first.
+/// Returns the place of the legend where it hides least of the curves: corners first.
 Legend legend_of(const Plot& plot, const std::vector<std::vector<Pixel>>& curves) {
   std::size_t longest = 0, named = 0;
   for (const Curve& c : plot.curves) longest = std::max(longest, c.name.size()), named += !c.name.empty();

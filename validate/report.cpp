@@ -31,7 +31,7 @@ std::string gate_text(const Metric& m) {
   return fmt::format("{} {}", m.side == Metric::Side::at_most ? "<=" : ">=", with_unit(m.gate, m.unit));
 }
 
-/// What a control must pass where its gate is not enough.
+/// Returns the bound that a control must pass where its gate is not enough.
 std::string bound_text(const Control& c) {
   if (!c.beyond) return "";
   return fmt::format("{} {}", c.side == Metric::Side::at_most ? ">" : "<", with_unit(*c.beyond, c.unit));
@@ -56,7 +56,7 @@ std::string cost_text(const Result& r) {
                      static_cast<double>(r.particle_steps) * 1e-6);
 }
 
-/// What is wrong with a result, a line each behind `indent`.
+/// Returns the faults of a result, a line each behind `indent`.
 std::string missed_by(const Result& r, std::string_view indent) {
   std::string missed;
   for (const Metric& m : r.metrics)

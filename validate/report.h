@@ -28,7 +28,7 @@ struct Result {
   bool passed() const;
   /// It did not pass, and all that is wrong are misses that are known.
   bool known() const;
-  /// Whether a control was run against the gate of that metric; true without a gate.
+  /// True if a control was run against the gate of that metric; also without a gate.
   bool controlled(const Metric& metric) const;
 
  private:
@@ -36,7 +36,7 @@ struct Result {
   bool sound() const;
 };
 
-/// What CPU seconds are counted of.
+/// The scope of CPU seconds.
 enum class Clock { process, thread };
 
 /// Runs one case; plots and attachments go into `folder`. An error of the case is its result, not
@@ -52,12 +52,12 @@ std::string text_of(const Result& result);
 /// "11 of 12 cases passed, 1 missed gates as it is known to, 0 failed" with every missed gate by
 /// name. `seconds`: of the whole run by the clock.
 std::string summary_of(const std::vector<Result>& results, double seconds);
-/// Nothing failed, apart from misses that are known.
+/// True if nothing failed, apart from misses that are known.
 bool succeeded(const std::vector<Result>& results);
 /// FORMATS: {"cases": [{"name", "set_up", "metrics": ..}], "passed", "failed"}, passed and failed
 /// counting cases; "known" counts those of the failed that only miss what they are known to miss.
 std::string json_of(const std::vector<Result>& results);
-/// What stands before how a case went, in its section of the page.
+/// The text before the result of a case, in its section of the page.
 inline constexpr std::string_view result_mark = "Result: ";
 /// The section of a case in the page docs/validation.md (page.h), `plots` being the folder of the
 /// pictures as the page sees it.

@@ -1,4 +1,4 @@
-// What a scene is made of, in a line.
+// A scene's contents in a line.
 #pragma once
 #include <string>
 

@@ -13,7 +13,8 @@
 namespace dreampm::validate {
 namespace {
 
-/// What the threads share: which case is next, and how the finished ones went.
+/// The state that the threads share: the number of the next case, and the results of the finished
+/// ones.
 class Suite {
  public:
   Suite(std::span<const Case* const> cases, Level level, const std::function<void(const Result&)>& done)
@@ -39,7 +40,8 @@ class Suite {
     }
   }
 
-  /// After all work. Results behind a case that was not done were not reported yet.
+  /// Returns the results after all work. Results behind a case that was not done were not reported
+  /// yet.
   std::vector<Result> results() {
     for (; reported_ < cases_.size(); ++reported_)
       if (results_[reported_]) done_(*results_[reported_]);

@@ -14,10 +14,10 @@ class Tank {
  public:
   static constexpr double g = 9.81;
 
-  /// Of the shaking, over gravity.
+  /// Acceleration of the shaking, over gravity.
   static constexpr double push = 0.6;
   enum class Motion { small, shaken };
-  /// Whether the overrides say what is filled.
+  /// The filling: a slab, or as the overrides give it.
   enum class Filling { slab, given };
 
   /// `cells` of the tank, of which `depth` are filled. Sound is ten times the largest expected
@@ -30,7 +30,7 @@ class Tank {
         rest(run.world.sets[0].values, g, height) {
     if (run.compresses()) rest.move(run.seeds[0]);
   }
-  /// After the seeds were given their motion.
+  /// Begins the run, after the seeds were given their motion.
   void begin() {
     run.begin();
     if (run.compresses()) rest.press(run.world);

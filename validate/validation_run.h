@@ -26,7 +26,8 @@ Table reference_table(std::string_view name);
 /// Parses a built-in scene; `overrides` as with --set. Throws InputError.
 model::Scene built_in_scene(std::string_view name, const std::vector<std::string>& overrides = {});
 
-/// What makes a scene of water run by the projection, on particles that do not lie in a lattice.
+/// Returns the overrides with which the projection runs a scene of water, on particles that do not
+/// lie in a lattice.
 std::vector<std::string> by_projection(std::string_view body, const std::vector<std::string>& more = {});
 
 /// R = float runs on the cpu backend, double on the reference.
@@ -56,7 +57,7 @@ class ValidationRun {
   World<R>& world;
   std::vector<std::vector<ParticleSeed>>& seeds;  ///< by set; what a case may still move before `begin`
 
-  /// Whether liquids are pressed by their own weight, and not by a projection.
+  /// True if liquids are pressed by their own weight, and not by a projection.
   bool compresses() const { return world.settings.solver == SolverKind::explicit_steps; }
   Engine<R>& engine() { return scene_.engine(); }
   Backend<R>& backend() { return engine().backend(); }
@@ -71,7 +72,7 @@ class ValidationRun {
     scene_.begin();
     engine().download(MatterFields::all);
   }
-  /// Between steps a case may look at and change whatever it likes. `motion` is filled at the end
+  /// Makes a step. Between steps a case may read and change anything. `motion` is filled at the end
   /// of a frame, and from `next_sample_time` [s] on.
   StepSums step(Motion<R>* motion = nullptr, double next_sample_time = std::numeric_limits<double>::infinity()) {
     if (interrupted()) throw Interrupted("interrupted; cases that were done are reported");

@@ -18,7 +18,7 @@ struct VortexDecay {
   std::vector<double> times, log_energy;  ///< s, ln(KE/KE0)
 };
 
-/// Of its liquid.
+/// The liquid of a vortex.
 struct VortexLiquid {
   double factor = 1;                      ///< times the viscosity, for controls
   std::string transfer = "apic";          ///< apic, flip or asflip
@@ -27,8 +27,8 @@ struct VortexLiquid {
   double damping = 0;                     ///< 1/s, for controls: takes energy that is no heat of viscosity
 };
 
-/// How many draws of its points a result is the mean of: one alone differs from the next by up to
-/// 0.3 % of the rate.
+/// The number of draws of its points over which a result is the mean: one alone differs from the
+/// next by up to 0.3 % of the rate.
 inline constexpr int vortex_draws = 4;
 
 /// The scene taylor-green at `cells` a side, a slab 4 cells thick, with speeds of at most 1 m/s;
@@ -39,7 +39,7 @@ VortexDecay vortex_decay(Trial& trial, int cells, double nu, const VortexLiquid&
 /// The same with as many draws.
 std::vector<VortexDecay> vortex_decays(Trial& trial, int cells, double nu, VortexLiquid liquid = {});
 
-/// Of what `value` takes from each.
+/// Returns the mean of `value` over the draws.
 template <class Value>
 Mean mean_of(const std::vector<VortexDecay>& draws, const Value& value) {
   std::vector<double> values;
@@ -47,7 +47,7 @@ Mean mean_of(const std::vector<VortexDecay>& draws, const Value& value) {
   return mean_of(values);
 }
 
-/// Of their decay rates.
+/// Returns the mean of the draws' decay rates.
 inline Mean rate_error(const std::vector<VortexDecay>& draws) {
   return mean_of(draws, [](const VortexDecay& v) { return v.rate - 1; });
 }

@@ -30,13 +30,13 @@ struct ColliderState {
   /// N: what matter pressed it with, on average over the steps of the last call that took any; 0
   /// after `restore`, and after colliders came or went.
   Vec3d force{};
-  WallType type = WallType::separate;  ///< what its surface does to matter
+  WallType type = WallType::separate;  ///< effect of its surface on matter
   double friction = 0;                 ///< Coulomb's coefficient
   double restitution = 0;              ///< of impacts, 0 to 1, of a rigid body; 0 of other colliders
   double slack = 0;                    ///< cells, as `set_slack` has them
-  bool is_rigid = false;               ///< whether it is a rigid body
-  bool moves = false;                  ///< whether it may stand elsewhere than in the scene
-  bool deforms = false;                ///< whether its shape changes
+  bool is_rigid = false;               ///< true if it is a rigid body
+  bool moves = false;                  ///< true if it may stand elsewhere than in the scene
+  bool deforms = false;                ///< true if its shape changes
 };
 
 /// The shape of a collider or rigid body where the solver has its surface, which is up to `slack`
@@ -46,7 +46,7 @@ class ColliderShape {
  public:
   const std::string& name() const;
   double mass() const;                        ///< kg, of a rigid body; 0 of other colliders
-  bool is_rigid() const;                      ///< whether it is a rigid body
+  bool is_rigid() const;                      ///< true if it is a rigid body
   double distance(const Vec3d& point) const;  ///< m, from its surface; negative inside
   Vec3d normal(const Vec3d& point) const;     ///< outward, of length 1
   Vec3d velocity(const Vec3d& point) const;   ///< m/s, of its surface there

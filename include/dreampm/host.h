@@ -1,4 +1,4 @@
-// What a program that holds the library decides: where lines go, and when to stop.
+// The host: a program that holds the library decides where lines go, and when to stop.
 #pragma once
 #include <string>
 
@@ -16,10 +16,10 @@ class Host {
   virtual void warning(const std::string& line) = 0;
   /// A line about work that is under way.
   virtual void progress(const std::string& line) { info(line); }
-  /// Whether such lines replace one another: then they come five times a second, else every ten
-  /// seconds.
+  /// True if a progress line replaces the one before: then lines come five times a second, else
+  /// every ten seconds.
   virtual bool rewrites_progress() const { return false; }
-  /// After the last of them, also where work was broken off.
+  /// Called after the last of them, also where work was broken off.
   virtual void progress_ends() {}
   /// Asked between steps: true ends the work with Interrupted, after the step.
   virtual bool stop_requested() { return false; }

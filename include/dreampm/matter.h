@@ -18,9 +18,9 @@ struct Parameter {
   std::string_view key;
   std::string_view unit;    ///< "1": a number without one
   double value = 0;         ///< NaN: the solver works it out
-  double min = 0, max = 0;  ///< that a value may have, both included
-  std::string_view about;   ///< what it is, in a line
-  bool log = false;         ///< whether it is natural to move it by factors
+  double min = 0, max = 0;  ///< range of a value, both ends included
+  std::string_view about;   ///< its meaning, in a line
+  bool log = false;         ///< true if it is natural to move it by factors
   /// Words that may stand for a value, each with its number, as {"linear", 1}; false and true are 0
   /// and 1. Where `words_only`, no other value may be had.
   std::vector<std::pair<std::string_view, double>> words;
@@ -36,7 +36,7 @@ struct ParameterValue {
 /// A material as it stands.
 struct MaterialState {
   std::string_view type;           ///< newtonian, elastic, snow, ...
-  bool liquid = false;             ///< whether it has no shape of its own
+  bool liquid = false;             ///< true if it has no shape of its own
   double particle_mass = 0;        ///< kg
   double particle_volume = 0;      ///< m^3, at rest
   double sound_speed = 0;          ///< m/s, at rest
@@ -44,11 +44,11 @@ struct MaterialState {
   double poissons_ratio = 0;       ///< of small elastic strains [1]; 1/2 where volume alone resists
 };
 
-/// Which particles came in as a body, whatever became of them since.
+/// The particles that came in as a body, whatever has happened to them since.
 struct BodyState {
-  std::string material;          ///< that it was made of
-  std::uint32_t first_id = 0;    ///< its particles have the ids from this one on,
-  std::uint32_t count = 0;       ///< as many as this
+  std::string material;          ///< the material of the body
+  std::uint32_t first_id = 0;    ///< ids of its particles begin here
+  std::uint32_t count = 0;       ///< number of these particles
   std::optional<Vec3d> color{};  ///< sRGB, 0 to 1; absent: as the look of its material
 };
 

@@ -1,4 +1,4 @@
-// What writes files of a simulation while it runs: those that `dreampm run` writes.
+// Observers that write files of a simulation while it runs: those that `dreampm run` writes.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -18,7 +18,7 @@ struct LedgerFile {
 /// A PLY file of all particles a frame, particles_NNNNNN.ply, the first at once.
 struct ParticleFiles {
   std::filesystem::path folder;  ///< is made if it is not there
-  /// What it holds beside positions, identities and materials: velocity, f, j, jp, density,
+  /// Attributes in the file beside position, identity and material: velocity, f, j, jp, density,
   /// pressure, color.
   std::vector<std::string> attributes{"velocity"};
 };

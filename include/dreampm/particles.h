@@ -39,7 +39,7 @@ struct AttributeView {
   std::size_t size() const { return values.size() / width; }
 };
 
-/// What `Simulation::visit` shows of particles.
+/// The arrays of particles that `Simulation::visit` shows.
 struct ParticleFields {
   bool position = true, velocity = false, id = false;
 };

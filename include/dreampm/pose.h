@@ -1,4 +1,4 @@
-// Where a rigid shape stands, and how it moves.
+// Pose and twist: the place of a rigid shape, and how it moves.
 #pragma once
 #include <cmath>
 
@@ -44,7 +44,7 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// How a rigid shape moves: the point x of it at velocity + spin x (x - center).
+/// The motion of a rigid shape: its point x moves at velocity + spin x (x - center).
 struct Twist {
   Vec3d velocity{};  ///< m/s, of the center
   Vec3d spin{};      ///< rad/s

@@ -14,7 +14,7 @@ namespace dreampm {
 
 class Simulation;
 
-/// What a ray meets first.
+/// The first surface that a ray meets.
 struct RayHit {
   double distance = 0;                ///< m, from its origin
   Vec3d point;                        ///< m
@@ -33,7 +33,7 @@ std::optional<RayHit> cast_ray(const Simulation& simulation, const Vec3d& origin
 struct NearCollider {
   std::string name;
   double distance = 0;    ///< m, from its surface; negative inside
-  bool is_rigid = false;  ///< whether it is a rigid body
+  bool is_rigid = false;  ///< true if it is a rigid body
 };
 
 /// Colliders and rigid bodies whose surface is nearer to a point [m] than `distance` [m], or that

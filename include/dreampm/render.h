@@ -8,7 +8,7 @@ namespace dreampm {
 
 class Simulation;
 
-/// What is not given is as the scene's section `render` says.
+/// Settings of one picture. A member that is not given is as in the scene's section `render`.
 struct PictureOptions {
   std::optional<int> width, height;  ///< pixels, 8 to 16384
   std::optional<int> samples;        ///< at most, a pixel; 4 or more

@@ -13,7 +13,7 @@
 
 namespace dreampm {
 
-/// How a scene file is read.
+/// Options for reading a scene file.
 struct SceneOptions {
   std::string variant;           ///< one of the file's variants; empty: the scene as it stands
   std::vector<std::string> set;  ///< PATH=VALUE each, laid over the variant: "space.spacing=0.01"
@@ -65,12 +65,13 @@ Scene load_scene(const std::filesystem::path& file, const SceneOptions& options 
 Scene parse_scene(std::string_view yaml, const std::string& name, const SceneOptions& options = {},
                   std::vector<std::string>* warnings = nullptr);
 
-/// What is wrong with a scene that a program built, a line each, by path:
-/// "bodies.drop.shape.sphere.radius is -1: must be above 0 m". Empty: nothing. Reads no file.
+/// Returns the faults of a scene that a program built, a line each, by path:
+/// "bodies.drop.shape.sphere.radius is -1: must be above 0 m". Empty if there are none. Reads no
+/// file.
 std::vector<std::string> check(const model::Scene& model);
 
-/// What a key of scene files means, in a sentence: about_key("space.spacing"). Names that scenes
-/// give are left out: "bodies.velocity". Empty for a key that there is not.
+/// Returns the meaning of a key of scene files in a sentence: about_key("space.spacing"). Names
+/// that scenes give are left out: "bodies.velocity". Empty for an unknown key.
 std::string about_key(std::string_view path);
 
 /// The values of a preset, as `dreampm materials TYPE` lists them: preset("newtonian", "honey").

@@ -91,7 +91,7 @@ struct Shape {
     return s;
   }
 
-  /// Both together; what both share; the first without the second.
+  /// The union of both; the intersection; the first without the second.
   friend Shape operator|(Shape a, Shape b) { return combined(BooleanShape::Op::unite, std::move(a), std::move(b)); }
   friend Shape operator&(Shape a, Shape b) {
     return combined(BooleanShape::Op::intersection, std::move(a), std::move(b));

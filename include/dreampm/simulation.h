@@ -32,7 +32,7 @@ namespace dreampm {
 struct SimulationOptions {
   std::string backend = "cpu";  ///< cpu: fast, in float; reference: plain loops, in double
   std::string isa = "auto";     ///< instruction set of the cpu backend, which decides the bits; auto: the best one
-  int threads = 0;              ///< that a step uses at most; 0: all cores. Bits do not depend on it
+  int threads = 0;              ///< most threads that a step uses; 0: all cores. Bits do not depend on it
   Host* host = nullptr;         ///< null: lines go to stderr, and an interrupt of the process stops
 };
 
@@ -50,7 +50,8 @@ class Snapshot {
   std::shared_ptr<const Data> data_;
 };
 
-/// Which steps the force on a collider is the mean of: those of a call, or of the call before too.
+/// The steps over which the force on a collider is averaged: those of this call, or those of the
+/// call before too.
 enum class ForceMean { of_this_call, goes_on };
 
 /// A scene that runs in this program.
@@ -87,8 +88,8 @@ class Simulation {
   void advance_to(double time);
   /// Steps to the end of that many frames.
   void advance_frames(int count);
-  /// That many steps, at least one. Velocities are kept of the last one alone, which is faster than
-  /// as many calls of `step`.
+  /// Makes `count` steps, at least one. Only the velocities of the last step are kept, which makes
+  /// this faster than as many calls of `step`.
   StepReport advance_steps(int count, ForceMean mean = ForceMean::of_this_call);
 
   double time() const;          ///< s
@@ -117,10 +118,10 @@ class Simulation {
   Names names() const;
   std::string backend() const;  ///< cpu or reference
   std::string isa() const;      ///< the instruction set that it computes by: avx2, baseline, ...
-  int threads() const;          ///< that a step uses at most
+  int threads() const;          ///< most threads that a step uses
   /// Sums over all matter. Looks at all particles.
   Totals totals() const;
-  /// How many there are, and came and went. Looks at none.
+  /// Returns the numbers of particles that there are, and that came and went. Reads no particle.
   ParticleCounts counts() const;
   /// The rows of a probe, which are those of its file in a run (docs/howto/measure-with-probes.md):
   /// at the start, and from then on at the ends of frames or at the probe's rate. `restore` goes
@@ -174,8 +175,8 @@ class Simulation {
   double parameter(std::string_view material, std::string_view key) const;
   /// All of them, with units and ranges.
   std::vector<Parameter> parameters(std::string_view material) const;
-  /// What a material comes to as it stands; or, with other values of some of its parameters, as it
-  /// would be. Nothing is changed. Throws InputError for a key that the material has not.
+  /// Returns derived values of a material as it stands, or as it would be with other values of some
+  /// parameters. Changes nothing. Throws InputError for a key that the material does not have.
   MaterialState material(std::string_view name, std::span<const ParameterValue> with = {}) const;
   /// A material more, of which there is no particle yet. Without a look it has that of scenes which
   /// say none. Throws InputError for a name that the scene has, and for what `check` would not
@@ -226,7 +227,8 @@ class Simulation {
   /// InputError for a name that no rigid body has, or numbers out of range.
   void hold(std::string_view rigid, const Grip& grip);
   std::optional<Grip> grip(std::string_view rigid) const;  ///< nothing where it is not held
-  /// Nothing happens where it is not held. Throws InputError for a name that no rigid body has.
+  /// Lets go of a rigid body; does nothing where it is not held. Throws InputError for a name that
+  /// no rigid body has.
   void let_go(std::string_view rigid);
   void let_go();  ///< of all
   /// A rigid body or another one. Throws InputError for a name that none has, one of a pin, or one
@@ -240,7 +242,7 @@ class Simulation {
   /// InputError for numbers out of range, and where the scene has a field of that name itself.
   void set_brush(std::string_view name, const Stroke& stroke);
   std::optional<Stroke> brush(std::string_view name) const;  ///< nothing where there is no such brush
-  /// Nothing happens where there is no such brush.
+  /// Removes a brush; does nothing where there is no such brush.
   void lift_brush(std::string_view name);
 
   // ---- memory

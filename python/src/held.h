@@ -44,7 +44,7 @@ class HeldSimulation {
   void on_step(nb::callable observer);
   void on_frame(nb::callable observer);
 
-  /// What the garbage collector asks of a type that holds other objects.
+  /// Visits the objects that a type holds, for the garbage collector.
   int traverse(visitproc visit, void* arg) const;
   void clear();
 
@@ -73,7 +73,7 @@ class HeldSimulation {
   Simulation simulation_;
 };
 
-/// What names a part of a simulation, which it keeps alive.
+/// A named part of a simulation, which it keeps alive.
 struct PartOf {
   nb::object simulation;
   HeldSimulation& held() const { return nb::cast<HeldSimulation&>(simulation); }

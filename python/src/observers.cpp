@@ -1,4 +1,4 @@
-// What writes files of a simulation while it runs.
+// Observers that write files of a simulation while it runs.
 #include "dreampm/observers.h"
 
 #include <nanobind/stl/filesystem.h>

@@ -41,7 +41,7 @@ std::size_t number_of(const Part& part, const std::string& name, const char* kin
   fail_input("{} {} is not in the scene; it has {}", kind, name, known.empty() ? "none" : known);
 }
 
-/// What dicts have, for a part whose `__getitem__` is there.
+/// Adds the methods of dicts to a part that has `__getitem__`.
 template <class C>
 void as_mapping(C& bound) {
   using Part = typename C::Type;

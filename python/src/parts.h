@@ -1,5 +1,5 @@
-// What stands behind sim.particles, sim.materials, sim.walls, sim.colliders and sim.probes: names,
-// and what they name.
+// The mappings sim.particles, sim.materials, sim.walls, sim.colliders and sim.probes: names, and
+// the objects of these names.
 #pragma once
 #include "held.h"
 

@@ -1,4 +1,4 @@
-// What the command's verbs `make` and `validate` do.
+// The functions of the command's verbs `make` and `validate`.
 #include <nanobind/stl/filesystem.h>
 
 #include "bindings.h"

@@ -1,4 +1,4 @@
-// What can be read of a simulation: names, sums, attributes of particles, shapes, rays.
+// The read side of a simulation: names, sums, attributes of particles, shapes, rays.
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/filesystem.h>
 

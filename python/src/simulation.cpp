@@ -38,7 +38,7 @@ Frames frames(nb::object simulation, std::optional<int> count) {
   return {{std::move(simulation)}, count.value_or(std::max(0, left))};
 }
 
-/// As the records of runs have it.
+/// Returns the state hash as the records of runs have it.
 std::string hex_of(std::uint64_t state) {
   Hash64 hash;
   hash.add(state);
@@ -103,7 +103,7 @@ constexpr const char* about_simulation =
     "at the frame's time. The same calls give the same bits, for any number of threads, after `restore`,\n"
     "and in the command `dreampm run`. SI units, y up.\n\n"
     "Edits act from the next step on: particles keep positions, velocities and deformation. They may stand\n"
-    "between steps and inside of observers. What they refuse is an InputError, as of a scene file.\n\n"
+    "between steps and inside of observers. What they refuse is an InputError, as in a scene file.\n\n"
     "While it steps the GIL is free: other threads of Python run. A simulation is used by one thread at a\n"
     "time (another one gets RunError); several simulations may run side by side. Ctrl-C is asked for between\n"
     "steps: KeyboardInterrupt leaves the call after a whole step, and the simulation can go on.";

@@ -324,7 +324,7 @@ class Struct {
     }
     return of + "(" + text + ")";
   }
-  /// What is read, of what may be given in several ways.
+  /// Returns the type as read, of one that may be given in several ways.
   template <class M>
   static std::string shown_type() {
     std::string type = Member<M>::type();

@@ -32,7 +32,7 @@ class File : public testing::Test {
   std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
   }
-  /// What `call` throws, as text with the exit code in front: "2: ...".
+  /// Returns the error that `call` throws, as text with the exit code in front: "2: ...".
   template <class Call>
   static std::string error_of(Call call) {
     try {

@@ -34,7 +34,7 @@ TEST(LargeVector, IsAVectorOfAnyLength) {
 }
 
 #ifdef __linux__
-/// Of this process [pages], touched or not.
+/// Returns the pages mapped by this process [pages], touched or not.
 std::size_t pages_mapped() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -58,7 +58,7 @@ TEST(LargeVector, SaysWhatItCannotHave) {
   EXPECT_THROW(numbers.reserve(numbers.max_size() + 1), std::length_error);
 }
 
-/// What the kernel knows of the mapping that holds `p`: "hg" where large pages are wished for.
+/// Returns the kernel's flags of the mapping that holds `p`: "hg" where large pages are wished for.
 std::string flags_of(const void* p) {
   std::ifstream maps("/proc/self/smaps");
   bool here = false;

@@ -25,7 +25,7 @@ TEST(Progress, DurationsReadAsAPersonSaysThem) {
   EXPECT_EQ(duration_text(7800), "2 h 10 min");
 }
 
-/// What a test program writes to stderr; in a test run this is no terminal.
+/// Returns the lines that a test program writes to stderr; in a test run this is no terminal.
 template <class Work>
 std::string lines_of(Work work) {
   testing::internal::CaptureStderr();

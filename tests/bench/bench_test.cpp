@@ -28,7 +28,7 @@ TEST(Counted, CountsWhatDependsOnTheParticle) {
   EXPECT_EQ(n.roots, 1u);
   EXPECT_EQ(n.slots(true), 7u);
   EXPECT_EQ(n.slots(false), 8u);
-  // What is the same for all is worked out once, and what is exactly nothing never.
+  // A value that is the same for all is worked out once, and one that is exactly zero never.
   EXPECT_EQ((same * same + same).v, 30);
   EXPECT_EQ((zero * a + b - zero).v, 3);
   EXPECT_EQ(mul_add(zero, a, b).v, 3);

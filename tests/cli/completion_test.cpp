@@ -1,4 +1,4 @@
-// What bash offers while a line is typed.
+// Completions that bash offers while a line is typed.
 #include <gmock/gmock.h>
 
 #include "typed.h"
@@ -11,7 +11,7 @@ using testing::Not;
 
 class Completion : public Typing {
  protected:
-  /// What bash offers for the last of these words.
+  /// Returns the completions that bash offers for the last of these words.
   std::string offered(const std::string& words) const {
     write("ask.sh", "source ./script\nCOMP_WORDS=(" + std::string(DM_COMMAND) + " " + words +
                         ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_dreampm\necho \"${COMPREPLY[@]}\"\n");

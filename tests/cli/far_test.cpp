@@ -119,7 +119,7 @@ TEST_F(Far, BeyondTheDigitsOfADoubleIsRefused) {
                         "1e+09 are possible"));
 }
 
-/// What later stages refuse, known before anything is simulated.
+/// Inputs that later stages refuse, refused before anything is simulated.
 class Later : public TypingAtADam {
  protected:
   void refused(const std::string& set, const std::string& message) const {

@@ -1,4 +1,4 @@
-// What stands between the fences of a page.
+// The text between the fences of a page.
 #pragma once
 #include <sstream>
 #include <string>

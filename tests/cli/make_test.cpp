@@ -142,8 +142,8 @@ TEST_F(Make, TheVolumeOfAMeshStandsBesideThatOfItsParticles) {
   EXPECT_THAT(type("info out/dam").out, HasSubstr("water: at frame 1 the particles take "));
 }
 
-/// What `surface` says of frame 1: how far the particles are off their rest volume, and the mesh
-/// off that [%].
+/// Returns the message of `surface` for frame 1: by how much the particles are off their rest
+/// volume, and the mesh off that [%].
 std::array<double, 2> culprits(const std::string& text) {
   const std::regex line(
       "at frame 1 the particles take ([-+0-9.]+) % of their rest volume; the mesh ([-+0-9.]+) % of that");

@@ -26,7 +26,8 @@ class Pages : public Typing {
     std::sort(list.begin(), list.end());
     return list;
   }
-  /// What `dreampm VERB --help` says; of a verb with verbs of its own what each of them says, too.
+  /// Returns the output of `dreampm VERB --help`; of a verb with verbs of its own also the output
+  /// of each of them.
   const std::string& help_of(const std::string& verb) {
     const auto [it, is_new] = helps.try_emplace(verb);
     if (!is_new) return it->second;
@@ -74,7 +75,7 @@ TEST_F(Pages, NameScenesThatThereAre) {
   EXPECT_GT(names, 10);
 }
 
-/// What a part of a scene lacks to be a whole one; names of its own may still be missing.
+/// Returns a part of a scene completed to a whole one; names that it uses may still be missing.
 std::string completed(const std::string& part) {
   const std::pair<const char*, const char*> sections[] = {
       {"dreampm:", "dreampm: 1"},

@@ -10,7 +10,7 @@ using testing::StartsWith;
 
 class Play : public Typing {
  protected:
-  /// What is wrong with a line, which exits with 2.
+  /// Returns the message for a line that exits with 2.
   std::string refusal(const std::string& line) const {
     const Typed t = type("play " + line);
     EXPECT_EQ(t.code, 2) << line << ": " << t.err;

@@ -235,7 +235,7 @@ TEST_F(RunFolder, ARefusedSceneLeavesNoFolder) {
     EXPECT_THAT(t.err, HasSubstr("outside the wall x_min")) << verb;
     EXPECT_FALSE(fs::exists(folder / "out")) << verb;
   }
-  // What is there stays as it is, but for the log.
+  // All files stay as they are, but for the log.
   ASSERT_EQ(type("run scene.yaml --frames 1").code, 0);
   const std::string before = read_file(folder / "out/cubes/run.json");
   EXPECT_EQ(type("run bad.yaml --out out/cubes --overwrite").code, 2);

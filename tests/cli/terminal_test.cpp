@@ -1,4 +1,4 @@
-// What a terminal gets, by util-linux's `script`.
+// Output to a terminal, by util-linux's `script`.
 #include <gmock/gmock.h>
 
 #include "typed.h"

@@ -53,7 +53,7 @@ class Typing : public testing::Test {
     EXPECT_EQ(t.out, "") << line;
   }
   void write(const std::string& name, const std::string& text) const { replace_file_text(folder / name, text); }
-  /// What a run's folder says of it.
+  /// Returns the record in a run's folder.
   nlohmann::json record(const std::string& run) const {
     return nlohmann::json::parse(read_file(folder / run / "run.json"));
   }

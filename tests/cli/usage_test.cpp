@@ -1,4 +1,4 @@
-// What is typed wrong, and what is typed to learn.
+// Wrong command lines, and those typed to learn.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 

@@ -32,7 +32,8 @@ std::shared_ptr<const Region> ball(double radius) {
   return make_region(s, dx, {});
 }
 
-/// Of the kernel of a node at `p`, whose axes are those of space, inside of what `inside` says.
+/// Returns the share of the kernel of a node at `p`, with the axes of space, inside of the shape
+/// that `inside` gives.
 template <class Inside>
 double summed(const Vec3d& p, const Inside& inside) {
   constexpr int parts = 48;

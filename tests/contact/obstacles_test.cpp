@@ -1,4 +1,4 @@
-// What colliders mean to nodes, and that it does not matter when they were asked for.
+// Obstacles: colliders near nodes, with the same results whenever they are asked for.
 #include "dreampm/contact/obstacles.h"
 
 #include <gtest/gtest.h>
@@ -69,8 +69,8 @@ TEST(Obstacles, EveryNodeNearAColliderIsThere) {
           Vec3d p = w.node_position(w.grid.blocks[b] * block_width + node_offset(n));
           if (!periodic) p = before_walls(w, p);
           double d = w.colliders[c].shape->distance(p);
-          // Of a ball that walls cut, the nearest of its surface may lie behind them: not where
-          // matter is.
+          // The nearest place on a ball that walls cut may lie behind them, where there is no
+          // matter.
           const Vec3d normal = w.colliders[c].shape->normal(p),
                       before = p - normal * (d - ColliderView::before_face * w.dx);
           if (d < ColliderView::slit * w.dx && length(before_walls(w, before) - before) > 0) continue;
@@ -141,7 +141,7 @@ TEST(Obstacles, PointsStandForAllOfASurfaceOnce) {
   EXPECT_LT(length(ball.closed), 0.005 * ball.area);
   EXPECT_LT(ball.off, 0.003);  // in the middle of a patch that bends
 
-  // Of what lies within a quarter of a cell of an edge some is missed.
+  // Some of the area within a quarter of a cell of an edge is missed.
   double area = 0;
   constexpr int turns = 30;
   for (int i = 0; i < turns; ++i) {
@@ -169,8 +169,8 @@ std::shared_ptr<const Region> box(const Vec3d& low, const Vec3d& high, const Vec
   return make_region(s, 0.01, {});
 }
 
-/// What nodes and surfaces know of the colliders must be the same in two worlds, whoever takes a
-/// node's kernel.
+/// Nodes and surfaces must see the same solid in two worlds, whichever collider takes a node's
+/// kernel.
 void expect_same_solid(const std::vector<Collider>& one, const std::vector<Collider>& other, double within = 1e-3) {
   World<float> w = world_of(false);
   const auto see = [&](const std::vector<Collider>& colliders) {
@@ -200,7 +200,7 @@ void expect_same_solid(const std::vector<Collider>& one, const std::vector<Colli
     EXPECT_NEAR(length(middle), 0, within);
     for (std::size_t n = 0; n < block_nodes; ++n) {
       const Vec3d p = w.node_position(w.grid.blocks[block] * block_width + node_offset(static_cast<int>(n)));
-      // What colliders with faces askew to each other take together is an estimate.
+      // The kernel's part in colliders with faces askew to each other is an estimate.
       EXPECT_NEAR(taken[n], also[n], std::max(within, 0.1)) << p.x << " " << p.y << " " << p.z;
       const auto at = block * block_nodes + n;
       const Node<float>&c = a.clearance()[at], &d = b.clearance()[at];
@@ -258,8 +258,8 @@ double kernel_beyond(double d) {
   return sum;
 }
 
-// What the floor and the wall of a tub take of a node's kernel is all but what lies beyond both,
-// however the tub is put together. Beside the corner each half of a cell has a point.
+// The floor and the wall of a tub take all of a node's kernel but the part beyond both, however the
+// tub is put together. Beside the corner each half of a cell has a point.
 TEST(Obstacles, InTheCornerOfATubBothFacesTakeTheirPart) {
   for (const bool of_boxes : {false, true})
     for (const double off : {0.0, 0.025, 0.05, 0.085}) {

@@ -120,7 +120,7 @@ TEST(Region, BooleansCombine) {
 
 Shape box(const Vec3d& low, const Vec3d& high) { return at(BoxShape{high - low}, (low + high) * 0.5); }
 
-// Where a hollow ends at the height of its block there is no wall, and none is felt: beside the
+// A hollow that ends at the height of its block has no wall there, and none is felt: beside the
 // mouth and above it the nearest place is the rim.
 TEST(Region, AHollowFlushWithItsBlockIsOpen) {
   const Shape block = box({0.08, 0.1, 0.08}, {0.32, 0.3, 0.32});

@@ -33,7 +33,7 @@ Edges edges_of(const Model& model) {
     for (const auto& e : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) ++edges[e];
   return edges;
 }
-/// Whether each edge has one face on either side.
+/// True if each edge has one face on either side.
 bool is_closed(const Edges& edges) {
   return std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
     const auto& [e, n] = edge;

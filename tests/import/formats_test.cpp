@@ -152,7 +152,7 @@ TEST_F(Formats, GltfExtensionsThatMoveVerticesAreRefusedByName) {
   refused("EXT_meshopt_compression", "export it without compression");
   refused("KHR_mesh_quantization", "export it without quantization");
   refused("EXT_mesh_gpu_instancing", "export it without that extension");
-  // What is compressed or quantized is, whether the file says so or not.
+  // A compressed or quantized file is found, whether the file says so or not.
   const auto changed = [](std::string text, const std::string& from, const std::string& to) {
     return text.replace(text.find(from), from.size(), to);
   };

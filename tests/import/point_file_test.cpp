@@ -78,7 +78,8 @@ TEST_F(PointFile, ArraysWithoutMeaningArePassedOver) {
   EXPECT_EQ(read_point_file(file("two.vtp", text)).velocities[1], (Vec3d{4, 5, 6}));
 }
 
-/// As VTK 9 writes them: a text is a line of ASCII, or has its length before it; bits are packed.
+/// The files as VTK 9 writes them: a text is a line of ASCII, or has its length before it; bits are
+/// packed.
 TEST_F(PointFile, LegacyTextsAndBitsArePassedOver) {
   const auto with = [&](const std::string& arrays) {
     const std::string head = small_vtk.substr(0, small_vtk.find("SCALARS"));

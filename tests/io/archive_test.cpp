@@ -169,7 +169,7 @@ TEST(Archive, AFlippedBitAnywhereIsFound) {
   replace_file_text(folder / "bad.h5", bad);
   EXPECT_THAT(message_of<InputError>([&] { try_open(folder / "bad.h5"); }),
               AllOf(HasSubstr("bad.h5: damaged"), HasSubstr("checksum")));
-  // What another program may have written: HDF5 without the seal.
+  // A file as another program may have written it: HDF5 without the seal.
   replace_file_text(folder / "bare.h5", whole.substr(0, whole.size() - 24));
   EXPECT_THAT(message_of<InputError>([&] { try_open(folder / "bare.h5"); }), HasSubstr("no dreampm archive"));
 }

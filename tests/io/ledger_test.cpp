@@ -53,7 +53,7 @@ TEST(Ledger, NumbersReadBackExactly) {
   }
   EXPECT_EQ(in.rows.back().mass, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isnan(in.rows.back().kinetic));
-  // Which sign a division of 0 by 0 gives hangs on the processor.
+  // The sign of 0 divided by 0 depends on the processor.
   EXPECT_EQ(exact_text(-std::numeric_limits<double>::quiet_NaN()), "nan");
 }
 

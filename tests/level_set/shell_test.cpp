@@ -20,7 +20,8 @@ TriMesh open_bowl(double radius, int times = 5) {
   return mesh;
 }
 
-/// Where the line from `from` along `to` enters and leaves the region, from its distances alone.
+/// Returns the places where the line from `from` along `to` enters and leaves the region, from its
+/// distances alone.
 std::pair<double, double> crossed(const Region& region, const Vec3d& from, const Vec3d& along, double length) {
   double enter = -1, leave = -1;
   constexpr int steps = 20000;

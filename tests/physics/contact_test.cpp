@@ -103,7 +103,7 @@ TEST(BoxContact, ActsOnAndBehindEachPlaneOnly) {
   expect_near(at(0, 4, 4), v);
 }
 
-// What a solid and a liquid do to each other at a node.
+// A meeting of a solid and a liquid at a node.
 struct Meeting {
   Vec3d liquid{0.3, -2, 0.1}, solid{-0.2, 0.5, 0};
   double m_liquid = 2, m_solid = 0.5;

@@ -1,5 +1,4 @@
-// Where the work on a particle goes: what a law does not store it turns into heat, and it gives
-// none of it back.
+// Work on a particle is stored or turned into heat, and a law gives no heat back.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -60,7 +59,7 @@ double work_of(const Sym3<double>& tau, const Mat3d& gradient) {
   return sum;
 }
 
-/// Whether a single step may give energy back: cohesive grains pull while their gaps close.
+/// True if a single step may give energy back: cohesive grains pull while their gaps close.
 bool may_give_back(const Values& v) { return v.has("cohesion") && v["cohesion"] > 0; }
 
 /// Laws without plasticity.
@@ -173,7 +172,7 @@ TEST(Dissipation, WorkIsStoredOrLost) {
       EXPECT_LT(fine.missing(), 0.01 * fine.gross);
       EXPECT_LT(fine.missing(), 0.5 * coarse.missing() + 1e-9 * fine.gross);
     });
-    // Of those that yield at a strain of 1e-4 such steps miss more.
+    // Materials that yield at a strain of 1e-4 miss more in such steps.
     for_kinds<M>(60, [&](const Values& v) {
       const Path<M> coarse(v, 500), fine(v, 2000);
       EXPECT_LE(fine.missing(), 0.5 * coarse.missing() + 1e-9 * fine.gross);
@@ -203,7 +202,7 @@ TEST(Dissipation, TearingIsPlasticAndTheChangeOfVolumeIsRelaxed) {
   for_kinds<Viscoplastic>(0, [](Values v) {
     const Swelling torn(v, 0.3, 3000, 1);
     EXPECT_GT(torn.plastic, 0);
-    EXPECT_EQ(torn.relaxed, 0) << "without anchoring";
+    EXPECT_EQ(torn.relaxed, 0) << "without volume relaxation";
     EXPECT_NEAR(torn.work, torn.stored + torn.plastic, 2e-3 * torn.work);
     v.set("relaxation", 1);
     const Swelling pressed(v, -0.05, 3000, 1);

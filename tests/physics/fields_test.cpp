@@ -14,15 +14,15 @@ namespace {
 
 const Passage closed{{{0.5, 0, 0}, {0.75, 0.25, 0.5}}, {{0, 0, 0}, {1, 0.5, 0.5}}, {}};
 
-/// What the field does to matter at x that moves at v [m/s^2].
+/// Returns the acceleration of the field on matter at x that moves at v [m/s^2].
 template <class F>
 Vec3d acceleration(const F& f, const Vec3d& x, const Vec3d& v = {}) {
   constexpr double dt = 1e-7;
   return (F::template Step<double>::of(f, dt)(v, x) - v) / dt;
 }
 
-/// What it gives to matter that is led from a to b without haste: by what it does to matter at
-/// rest.
+/// Returns the energy that the field gives to matter that is led slowly from a to b: by its action
+/// on matter at rest.
 template <class F>
 double led(const F& f, const Vec3d& a, const Vec3d& b) {
   constexpr int n = 20000;

@@ -11,7 +11,7 @@ namespace dreampm {
 namespace {
 using namespace test;
 
-/// What a search of 12 halvings leaves open.
+/// The tolerance of a search of 12 halvings.
 constexpr double searched = 2e-4;
 
 TEST(Impact, SolidsLinearInUniaxialStrainCarryItWithTheirSound) {

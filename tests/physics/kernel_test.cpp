@@ -69,7 +69,7 @@ TEST(Transfer, GatherOfALinearFieldIsExact) {
   }
 }
 
-// What J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a, for
+// The rule that J of a liquid follows: 4 sum w v (x_i - x_p)_a less the excess is sum v dw/dx_a,
 // whatever the nodes hold, and also where particles of two cells share four nodes.
 TEST(Transfer, AffineLessItsExcessIsTheGradientOfTheSplines) {
   double nodes[4][4][3];
@@ -244,7 +244,7 @@ TEST(Shift, UnderAnyFlatSurfaceTheReadingIsThatAtRestDensity) {
       for (int k = 0; k < draws; ++k) {
         const Vec3d t{offset(), offset(), offset()};
         const DensityState<double> p = packing_of([&](const Vec3d& x) { return dot(x, up) < depth; }, t);
-        sum += p.content / 2 / p.at_rest;
+        sum += p.node_content / 2 / p.at_rest;
       }
       EXPECT_NEAR(sum / draws, 1, 0.03) << depth << " " << up.x << " " << up.y << " " << up.z;
     }
@@ -262,7 +262,7 @@ TEST(Shift, ASwollenLayerIsNotTakenForASurface) {
     // The floor mirrors it.
     const auto layer = [&](const Vec3d& x) { return std::abs(x.y + height) < 3; };
     const DensityState<double> p = packing_of(layer, {0.1, 0.2, 0.3}, 0.5);
-    EXPECT_NEAR(p.content / 2 / p.at_rest, 0.5, 0.05) << height;
+    EXPECT_NEAR(p.node_content / 2 / p.at_rest, 0.5, 0.05) << height;
   }
 }
 

@@ -25,7 +25,7 @@ template <class V>
 DM_FN Two<V> both(V low, V high) {
   return {low, high};
 }
-/// Of 64 bytes of numbers.
+/// A tag of 64 bytes of numbers.
 template <class T>
 struct ScalableTag {
   static_assert(HWY_LANES(float) == 8);
@@ -243,7 +243,7 @@ DM_FN Mask<ScalableTag<float>> FirstN(ScalableTag<float>, std::size_t n) {
 }
 }  // namespace hn
 
-/// As with AVX-512 in math/lanes.h.
+/// The pick as with AVX-512 in math/lanes.h.
 template <class V, class Numbers>
 DM_FN hn::Two<V> pick_of_two(const hn::Two<V>& first, const hn::Two<V>& second, const hn::Two<Numbers>& numbers) {
   constexpr hn::ScalableTag<float> d;

@@ -60,7 +60,8 @@ struct Worst {
   }
 };
 
-/// What a change of each number of the state by an ulp makes of an answer, in all, over an ulp.
+/// Returns the change of an answer over an ulp where each number of the state changes by an ulp, in
+/// all.
 template <class M>
 double felt(const Values& v, typename M::template State<float> state, const StrainIncrement<float>& at,
             double StressResponse<double>::* answer) {
@@ -124,7 +125,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
       double scale = stiff;
       for (const float x : tau) scale = std::max(scale, static_cast<double>(std::abs(x)));
       for (int k = 0; k < 6; ++k) worst.stress.see(call->tau[k][p], tau[k], scale);
-      // What is ill-conditioned may err by what rounding of the state makes of it.
+      // Ill-conditioned answers may err by the effect of rounding of the state.
       const auto see = [&](Worst& so_far, float a, float b, double size, double StressResponse<double>::* answer) {
         if (std::abs(wide(a) - wide(b)) > most_ulps * ulp * size) size += felt<M>(v, before, at, answer);
         so_far.see(a, b, std::max(size, 1e-30));
@@ -144,7 +145,7 @@ void compare_law(int index, const Isa& isa, const Values& v, int rounds, LawUlps
 void expect_near(const LawUlps& worst, const Values& v) {
   // Stress follows exp(-xi Jp) where there is hardening: xi ulp for each one of Jp.
   const double amplified = 1 + (v.has("hardening") ? v["hardening"] : 0);
-  // What flows as rate^n is found by its logarithm over n; beyond e^16 one ulp of that is 16 of its
+  // The flow as rate^n is found by its logarithm over n; beyond e^16 one ulp of that is 16 of its
   // own.
   const double n = v.has("flow_index") ? v["flow_index"] : 1, logarithm = n == 1 ? 1 : 2 / std::min(n, 1.0);
   EXPECT_LE(worst.state.ulps, most_ulps) << text_of(v);

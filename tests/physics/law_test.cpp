@@ -1,5 +1,5 @@
-// What every law of the list must obey: rest, frame indifference, stress from energy, a bounded
-// wave speed.
+// Rules that every law of the list must obey: rest, frame indifference, stress from energy, a
+// bounded wave speed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,8 +21,8 @@ double stiffness(const StressResponse<R>& r, const Values& v) {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 
-/// Of an answer, and of one after a past of six steps: hardening makes xi, 20 at most, of each ulp
-/// of Jp.
+/// Rounding of an answer, and of one after a past of six steps: hardening multiplies each ulp of Jp
+/// by xi, 20 at most.
 constexpr double rounding = 100 * ulp, past_rounding = 1000 * ulp;
 
 /// Calls body(values, law) with values of every kind until one fails.
@@ -37,7 +37,7 @@ void for_kinds(int draws, Rng& rng, const Body& body) {
   }
 }
 
-/// Whether the report's program, which has no bound on its exponent, overflowed.
+/// True if the report's program, which has no bound on its exponent, overflowed.
 bool overflowed(const Values& v, const StressResponse<double>& r) {
   return v.has("legacy") && v["legacy"] != 0 && !std::isnormal(r.sound_speed);
 }
@@ -354,7 +354,8 @@ TEST(Newtonian, PressesOnlyAfterItsGapsHaveClosed) {
   EXPECT_EQ(s.e, 0);
 }
 
-// What ASFLIP moves by itself. At rest the strain of a liquid is noise about 0, and says nothing.
+// ASFLIP moves matter that has come apart. At rest the strain of a liquid is noise about 0, and is
+// no sign of that.
 TEST(Laws, MatterHasComeApartByItsGapsOrByItsVolume) {
   const auto water = Newtonian::Law<double>::from(complete(Newtonian::info));
   const auto of_water = [&](double e) { return separated_fraction(water, Newtonian::State<double>{e}); };
@@ -418,7 +419,7 @@ TEST(Newtonian, SwollenLiquidIsGivenGaps) {
   EXPECT_NEAR(after(0, 2, 0.52), VolumeCorrection::swelling_pace * share * 0.5 * 0.04, 1e-12) << "half believed";
   // Pressed again and again, the gap of a step is 0.04 at most.
   EXPECT_LE(after(-0.3, 3, 1, 100000), VolumeCorrection::widest_gap);
-  EXPECT_LT(VolumeCorrection::widest_gap, VolumeCorrection::parted_strain) << "no gap of an anchoring counts as torn";
+  EXPECT_LT(VolumeCorrection::widest_gap, VolumeCorrection::parted_strain) << "no gap of a relaxation counts as torn";
 }
 
 }  // namespace

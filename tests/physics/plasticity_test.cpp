@@ -265,7 +265,7 @@ TEST(Sand, CohesionHoldsWithoutPressure) {
   EXPECT_LT(std::sqrt(norm2(r.tau.full())), 1e-2);
 }
 
-/// What it answers after a simple shear at `rate` to a strain of 3.
+/// Returns the response after a simple shear at `rate` to a strain of 3.
 StressResponse<double> sheared(const Values& v, double rate, double dt) {
   const auto law = Viscoplastic::Law<double>::from(v);
   auto s = rest_state<Viscoplastic, double>();

@@ -18,8 +18,8 @@ double hardening_of(const MaterialInfo& info, const Values& v) {
   return v.has("hardening") ? std::exp((info.name == "seed" ? 0.45 : 0.2) * v["hardening"]) : 1;
 }
 
-/// What is wrong with an answer, or nothing. Stress is a strain times a modulus and a viscosity
-/// times a rate: neither may be beyond what the reported bounds say.
+/// Returns the fault of an answer, or nothing. Stress is a strain times a modulus and a viscosity
+/// times a rate: neither may be beyond the reported bounds.
 template <class M, class R>
 std::string complaint(const Values& v, typename M::template State<R> s, const StressResponse<R>& r,
                       const StrainIncrement<R>& at, double fastest) {

@@ -136,8 +136,8 @@ double viscosity_seen(double density, const State& before, const Mat3d& strain, 
   return std::sqrt(norm2(more)) * dt / (2 * density * std::sqrt(norm2(symmetric_part(strain).full())));
 }
 
-/// What is wrong with the viscosity that a law reports in a state, or nothing. Steps are bounded by
-/// what is reported, and only what `add_viscous` adds can be sub-cycled.
+/// Returns the fault of the viscosity that a law reports in a state, or nothing. Steps are bounded
+/// by the reported viscosity, and only that which `add_viscous` adds can be sub-cycled.
 template <class M>
 std::string viscosity_complaint(const typename M::template Law<double>& law, const Values& v,
                                 const typename M::template State<double>& s, const Mat3d& strain) {
@@ -170,18 +170,18 @@ inline Values any_clamping(const MaterialInfo& info, Rng& rng) {
   return within_range(info, v);
 }
 
-/// Whether the law clamps stretches.
+/// True if the law clamps stretches.
 template <class M>
 constexpr bool clamps() {
   return M::info.name == "snow" || M::info.name == "seed";
 }
 
-/// Whether the state begins with the deformation gradient F.
+/// True if the state begins with the deformation gradient F.
 template <class M>
 constexpr bool stores_f() {
   return state_columns<M> >= 9 && M::template State<float>::names[0] == std::string_view("f_00");
 }
-/// Whether the state begins with e = J - 1.
+/// True if the state begins with e = J - 1.
 template <class M>
 constexpr bool stores_e() {
   return M::template State<float>::names[0] == std::string_view("e");

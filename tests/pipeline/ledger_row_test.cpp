@@ -75,7 +75,7 @@ TEST(Swollen, StandsUntilItIsMeasuredAgain) {
   EXPECT_NEAR(start.row(measured(0), &second).swollen, 0, 1e-12);
   FrameSums sums = measured(3e-4);
   sums.add(StepSums{}, 1e-3);
-  EXPECT_EQ(sums.swollen, 3e-4) << "a step without an anchoring measures nothing";
+  EXPECT_EQ(sums.swollen, 3e-4) << "a step without volume relaxation measures nothing";
 }
 
 TEST(Swollen, IsNoNumberWhereNothingMeasuresIt) {

@@ -62,7 +62,7 @@ TEST(ProjectionLedger, KnowsWhatEnergyAnImpactTook) {
   }
   const double lost = run.at(0, "kinetic") + run.at(0, "gravity") - run.at(39, "kinetic") - run.at(39, "gravity");
   EXPECT_GT(lost, 0);
-  // What is too dense is moved up.
+  // Matter that is too dense is moved up.
   EXPECT_NEAR(projected + transferred, lost, 0.15 * lost);
   EXPECT_GT(projected, 0.3 * lost);
   EXPECT_GT(transferred, 0.05 * lost);

@@ -202,7 +202,7 @@ TEST(Strict, AGapIsSeenAndNamed) {
   EXPECT_NE(breach("dissipated_rest", 0, -0.5 * moved).find("energy:"), std::string::npos);
   EXPECT_NE(breach("dissipated_rest", 1, std::nan("")).find("energy:"), std::string::npos);
   EXPECT_NE(breach("dissipated_transfer", 0, -0.5 * moved).find("energy:"), std::string::npos);
-  // What nodes get and particles do not take over stays nowhere.
+  // A difference between the momentum of nodes and that of particles stays nowhere.
   LedgerRow loop = now;
   loop.dissipated_rest = -0.5 * moved, loop.dissipated_transfer = 0.5 * moved;
   EXPECT_FALSE(ledger_breach(before, loop));

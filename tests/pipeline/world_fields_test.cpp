@@ -102,7 +102,7 @@ void fill_set(ParticleSet<double>& set, const std::string& name, const std::stri
   set.mass = 0.5, set.rest_volume = 0.25, set.transfer = {1, 0.9, 0};
   set.id = {first_id, first_id + 1, first_id + 2};
   set.block_start = {0, 2, 3};
-  for (auto* part : {&set.u, &set.own})
+  for (auto* part : {&set.u, &set.own_velocity})
     for (auto& axis : *part) axis = {0.5, 1.5, 2.5};
   for (auto& column : set.gradient) column = {0.25, 0.5, 0.75};
   set.carries_motion = true;
@@ -120,7 +120,7 @@ World64 full_world() {
   w.rigid.resize(1), w.collision.resize(1);
   w.emitters.resize(1), w.emitters[0].name = "tap";
   w.sinks.resize(1), w.sinks[0].name = "drain";
-  w.viscous_stages = 3, w.keeping = 0.5, w.settings.sub_cycles = false;
+  w.viscous_stages = 3, w.kept_kinetic_energy = 0.5, w.settings.sub_cycles = false;
   fill_set(w.sets.emplace_back(), "water", "newtonian", true, state_columns<Newtonian>, 0);
   fill_set(w.sets.emplace_back(), "jelly", "elastic", false, state_columns<Elastic>, 10);
   w.particle_blocks = {{0, 0, 0}, {0, 0, 1}};
@@ -177,7 +177,7 @@ class Saved : public testing::Test {
              std::to_string(::getpid()) + ".h5");
   }
   void TearDown() override { std::filesystem::remove(file_); }
-  /// What comes back into a world of the same scene.
+  /// Returns the world as it comes back into one of the same scene.
   World64 there_and_back(const World64& world) {
     save_checkpoint(file_, world, {"scene", "reference", "scalar", {}, 0, {}});
     World64 back = as_world<double>(world);
@@ -195,17 +195,17 @@ TEST_F(Saved, EveryMemberOfTheStateSurvivesACheckpoint) {
     if (m.name == "grid/blocks" || !m.use.saved) return;
     const World64 back = there_and_back(changed);
     EXPECT_EQ(state_hash(back), state_hash(changed)) << m.name;
-    EXPECT_EQ(back.keeping, changed.keeping) << m.name;
+    EXPECT_EQ(back.kept_kinetic_energy, changed.kept_kinetic_energy) << m.name;
   });
 }
 
 TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   World64 world = full_world();
-  world.viscous_stages = 0, world.keeping = 0;
+  world.viscous_stages = 0, world.kept_kinetic_energy = 0;
   world.sets.pop_back(), world.colliders.clear();
   world.sets[0].transfer = {};
   world.sets[0].carries_motion = false;
-  for (auto& axis : world.sets[0].own) axis.clear();
+  for (auto& axis : world.sets[0].own_velocity) axis.clear();
   for (auto& column : world.sets[0].gradient) column.clear();
   visit_nodes(world.grid, [&](const auto& field, auto& nodes) {
     if (field.name != "nodes") nodes.clear();
@@ -214,10 +214,10 @@ TEST_F(Saved, ArraysThatAWorldDoesNotHaveAreNotThereAfterwards) {
   EXPECT_EQ(state_hash(back), state_hash(world));
   visit_nodes(back.grid,
               [&](const auto& field, const auto& nodes) { EXPECT_EQ(nodes.empty(), field.name != "nodes"); });
-  EXPECT_TRUE(back.sets[0].own[0].empty());
+  EXPECT_TRUE(back.sets[0].own_velocity[0].empty());
 }
 
-/// What is written whole may still be of another version, or of a program.
+/// A file that is whole may still be of another version, or of a program.
 TEST_F(Saved, WhatDoesNotFitTogetherIsRefusedByItsName) {
   const World64 world = full_world();
   EXPECT_NO_THROW(there_and_back(world));

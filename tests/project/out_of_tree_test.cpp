@@ -36,7 +36,7 @@ TEST(OutOfTree, ItReportsTheViscosityItActsWith) {
 
 constexpr double bar_length = 0.4, bar_mu = 1e4, bar_lambda = 4e4;
 
-/// Of the kinetic energy at the start.
+/// Energies over the kinetic energy at the start.
 struct Period {
   double kinetic;  ///< what is left of it after one period
   double lost;     ///< of kinetic and elastic energy together
@@ -81,8 +81,8 @@ TEST(OutOfTree, ItRunsAndItsDashpotDampsAsTheoryTells) {
         cells, free.kinetic, damped.kinetic, rate, want, damped.lost, damped.viscous);
     EXPECT_LT(free.kinetic, 1);
     EXPECT_EQ(free.viscous, 0);
-    // What is lost is the dashpot's heat and what the transfer takes without it too; the rest is
-    // the error of an explicit step, of first order in dt, and dt goes with dx.
+    // The lost energy is the dashpot's heat, and that which the transfer takes without it too; the
+    // rest is the error of an explicit step, of first order in dt, and dt goes with dx.
     rest[fine] = std::abs(damped.lost - damped.viscous - free.lost) / damped.lost;
     error[fine] = std::abs(rate / want - 1);
   }

@@ -22,7 +22,7 @@ class Places : public testing::Test {
       for (const auto& entry : fs::recursive_directory_iterator(source / folder))
         if (entry.is_regular_file()) texts_[fs::relative(entry.path(), source).string()] = read_file(entry.path());
   }
-  /// Those that have one of the words.
+  /// Returns the files that have one of the words.
   std::set<std::string> of(const std::vector<std::string>& words) const {
     std::set<std::string> found;
     for (const auto& [file, text] : texts_)

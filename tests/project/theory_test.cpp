@@ -181,7 +181,7 @@ TEST(Theory, IsShort) {
   std::size_t words = 0;
   for (const auto& [name, page] : pages())
     words += all(std::regex_replace(page, std::regex("```math[^`]*```"), ""), "\\S+").size();
-  // Of explicit steps 6000, and of the projection with all that lies in its liquid 1500.
+  // Explicit steps have 6000 words, and the projection with all that lies in its liquid 1500.
   EXPECT_LE(words, 7500u) << "docs/theory has the method; how it was found goes to docs/notes";
 }
 

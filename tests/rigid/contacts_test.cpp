@@ -99,7 +99,7 @@ TEST(RigidContacts, GiveBackWhatRestitutionSaysAtAnyStep) {
   std::printf("off by up to %.2f %% of the height\n", 100 * worst);
 }
 
-// Of two equal balls of restitution 1 the one stops and the other goes on.
+// Two equal balls of restitution 1 meet: one stops, and the other goes on.
 TEST(RigidContacts, PassOnTheSpeedOfABall) {
   for (const double dt : {0.0005, 0.004}) {
     Bodies world;
@@ -112,7 +112,7 @@ TEST(RigidContacts, PassOnTheSpeedOfABall) {
   }
 }
 
-// What a plate does that tumbles far off does not depend on whether others touch.
+// A plate that tumbles far off moves the same, whether others touch or not.
 TEST(RigidContacts, LeaveAloneWhatTouchesNothing) {
   const auto tumble = [](bool with_others) {
     Bodies world;

@@ -1,4 +1,4 @@
-// What is added up over the steps of a frame, and what a checkpoint carries of it.
+// Sums over the steps of a frame, and the part of them that a checkpoint carries.
 #include "dreampm/run/frame_sums.h"
 
 #include <gtest/gtest.h>

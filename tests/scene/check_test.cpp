@@ -58,10 +58,10 @@ TEST(Check, ASceneOfEachIsRightAndReadsBackFromItsFile) {
   EXPECT_EQ(r.scene.materials[0].values["gamma"], 7) << "what is left out has its default";
   EXPECT_EQ(r.scene.output.folder, "out/each");
   EXPECT_EQ(r.scene.render.looks.size(), 2u + 3u) << "all have a look";
-  const std::string text = emit_scene(r.scene);
+  const std::string text = write_scene(r.scene);
   const ParseResult again = parse_scene_text(text, "each.yaml");
   ASSERT_TRUE(again.ok()) << again.text();
-  EXPECT_EQ(emit_scene(again.scene), text);
+  EXPECT_EQ(write_scene(again.scene), text);
 }
 
 TEST(Check, ScenesOfFilesAreRightAsModelsAndStayAsTheyAre) {
@@ -72,7 +72,7 @@ TEST(Check, ScenesOfFilesAreRightAsModelsAndStayAsTheyAre) {
     ASSERT_TRUE(file.ok()) << file.text();
     const ParseResult r = check_scene(file.scene);
     EXPECT_TRUE(r.ok()) << entry.path() << ": " << r.text();
-    EXPECT_EQ(emit_scene(r.scene), emit_scene(file.scene)) << entry.path();
+    EXPECT_EQ(write_scene(r.scene), write_scene(file.scene)) << entry.path();
     EXPECT_EQ(scene_hash(r.scene, Part::video), scene_hash(file.scene, Part::video)) << entry.path();
     ++count;
   }

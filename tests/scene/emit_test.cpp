@@ -1,5 +1,5 @@
-// What was parsed can be written and read back; hashes change with what they cover and with nothing
-// else.
+// Scenes that were parsed can be written and read back; hashes change with what they cover and with
+// nothing else.
 #include "dreampm/scene/emit.h"
 
 #include <fmt/format.h>
@@ -217,15 +217,15 @@ video: {quality: 25}
 
 TEST(Emit, ReadsBackAsTheSameScene) {
   const model::Scene d = parsed(everything);
-  const std::string text = emit_scene(d);
+  const std::string text = write_scene(d);
   expect_same(d, parsed(text));
-  EXPECT_EQ(emit_scene(parsed(text)), text);
+  EXPECT_EQ(write_scene(parsed(text)), text);
   for (const Part p : {Part::simulation, Part::particles, Part::surface, Part::render, Part::video})
     EXPECT_EQ(scene_hash(d, p), scene_hash(parsed(text), p));
   const ParseResult as_model = check_scene(d);
   EXPECT_TRUE(as_model.ok()) << as_model.text();
   expect_same(as_model.scene, d);
-  EXPECT_EQ(emit_scene(as_model.scene), text);
+  EXPECT_EQ(write_scene(as_model.scene), text);
 }
 
 TEST(Emit, AnotherSurfaceFormatIsTheSameMesh) {
@@ -242,7 +242,7 @@ TEST(Emit, EveryShippedSceneReadsBack) {
   for (const auto& f : std::filesystem::directory_iterator(std::filesystem::path(DM_SOURCE_DIR) / "scenes")) {
     if (f.path().extension() != ".yaml") continue;
     const model::Scene d = load_scene(f.path(), {.variant = "preview", .overrides = {}});
-    expect_same(d, parsed(emit_scene(d)));
+    expect_same(d, parsed(write_scene(d)));
   }
 }
 

@@ -1,4 +1,4 @@
-// What a scene means: defaults, presets, variants, overrides.
+// The meaning of a scene: defaults, presets, variants, overrides.
 #include "dreampm/scene/parse.h"
 
 #include <fmt/format.h>

@@ -62,7 +62,7 @@ TEST(Scenes, TheDragonIsTheOneOfTheReport) {
 }
 
 TEST(Scenes, TheDropHasAVariantForEveryPreset) {
-  // What docs/reference/materials.md shows: TYPE-PRESET, or TYPE where there are no presets.
+  // The pictures of docs/reference/materials.md: TYPE-PRESET, or TYPE where there are no presets.
   const fs::path file = fs::path(DM_SOURCE_DIR) / "scenes/materials/drop.yaml";
   std::size_t wanted = 0;
   const auto has = [&](const MaterialInfo& info, const Preset* preset) {

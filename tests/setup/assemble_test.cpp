@@ -1,4 +1,4 @@
-// What a scene becomes before its first step.
+// The world made from a scene, before its first step.
 #include "dreampm/setup/assemble.h"
 
 #include <fmt/format.h>
@@ -78,7 +78,7 @@ TEST(Assemble, FrictionThatNothingFeelsIsNoted) {
   EXPECT_EQ(noted("newtonian", floor, cork), "") << "the body feels it";
 }
 
-// Of a small cork apic takes a share of the motion in each step.
+// APIC takes a share of the motion of a small cork in each step.
 TEST(Assemble, ALightBodyThatIsHeldBackIsNoted) {
   const auto noted = [](const std::string& transfer, double radius, double density) {
     const InitialState all =

@@ -133,7 +133,7 @@ TEST(ColliderMesh, AShellIsDrawnHollow) {
   const double volume = ball(radius + thickness / 2) - ball(radius - thickness / 2);
   EXPECT_NEAR(surface::enclosed_volume(hollow) / volume, 1, 0.02);
   expect_near(bounds_of(hollow).max, Vec3d{0.5, 0.5, 0.5} + Vec3d{1, 1, 1} * (radius + thickness / 2), 1e-3);
-  // Of a plane it is a plate, closed at the sides.
+  // A plane becomes a plate, closed at the sides.
   Shape plane;
   plane.form = PlaneShape{{0, 0.5, 0}, {0, 1, 0}};
   const TriMesh plate = collider_mesh(plane, 0.05, room, {}, 0.1);

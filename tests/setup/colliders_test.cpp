@@ -246,7 +246,7 @@ TEST(WithinColliders, MatterThatStartsThereIsAnError) {
   EXPECT_EQ(held.notes, std::vector<std::string>{"0.006 m^3 of body cube lie within collider post, which holds them"});
 }
 
-/// What is said of a shell about a bowl 10 m wide.
+/// Messages about a shell around a bowl 10 m wide.
 class WideBowl : public OpenBowl {
  protected:
   std::string said(double thickness, double spacing) const {

@@ -49,7 +49,7 @@ TEST(Inflow, AJetIsContinuousAtAnySpeed) {
     s.advance_to(time);
     const ParticleView view = s.particles("water");
     const double volume = static_cast<double>(view.size()) * jet_spacing * jet_spacing * jet_spacing;
-    // What was in the shape at the start, and what came through since.
+    // The volume in the shape at the start, and that which came through since.
     EXPECT_NEAR(volume, jet_area * (0.04 + speed * s.time()), 0.01 * jet_area * 0.24 + jet_area * jet_spacing) << speed;
     std::size_t within = 0;
     for (const Vec3f& p : view.position) within += p.x > 0.1033f && p.x < 0.2033f;
@@ -85,7 +85,7 @@ TEST(Inflow, StartsStopsAndRunsDry) {
   EXPECT_EQ(dry.particle_count(), 100u);
 }
 
-// Where matter stands nothing is born: a closed box fills up, and its pressure stays finite.
+// No matter is born where matter stands: a closed box fills up, and its pressure stays finite.
 TEST(Inflow, NothingIsBornWhereMatterStands) {
   std::string text = jet("velocity: [0.5, 0, 0], pool: 100000");
   text.replace(text.find("max: [0.6, 0.2, 0.2]"), 20, "max: [0.2, 0.2, 0.2]");
@@ -204,8 +204,8 @@ std::vector<Vec3d> places_of_jet(double radius, double far, double move, const V
   return places;
 }
 
-// As much comes in as the section and the way ask for, wherever the jet points; no two places are
-// near one another, and none follows another in a column.
+// The inflow is as large as the section and the way ask for, wherever the jet points; no two places
+// are near one another, and none follows another in a column.
 TEST(Inflow, PlacesOfAJetAreNewAllAlongIt) {
   constexpr double radius = 3, far = 250;
   for (const Vec3d& along : {Vec3d{0, -1, 0}, Vec3d{1, 0, 0}, normalized(Vec3d{1, 2, -3})}) {

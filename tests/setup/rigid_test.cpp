@@ -132,7 +132,8 @@ TEST(Rigid, LightAndHeavyBodiesStayCalm) {
   }
 }
 
-// What water gains a body loses: without gravity all that changes the sum is walls, which are far.
+// Momentum that water gains a body loses: without gravity only walls, which are far, change the
+// sum.
 TEST(Rigid, MomentumOfWaterAndBodyIsConserved) {
   Simulation s(parse_scene(with_bodies("brick: {shape: {box: {size: [0.12, 0.12, 0.12]}}, density: 2000, position: "
                                        "[0.16, 0.3, 0.3], velocity: [1, 0, 0], spin: [0, 3, 0]}",

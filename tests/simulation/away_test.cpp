@@ -52,7 +52,7 @@ std::string bytes_of(const fs::path& file) {
   return text.str();
 }
 
-/// What a run writes of its matter.
+/// The files that a run writes of its matter.
 struct Written {
   std::map<std::string, std::string> files;
   std::vector<std::string> hashes;
@@ -108,8 +108,8 @@ TEST(Away, ARunWritesTheSameFiles) {
     }
 }
 
-/// What a program sees of a simulation with every kind of edit, in turns, so that each reader is
-/// once the first after a step or an edit.
+/// The state that a program sees of a simulation with every kind of edit, in turns, so that each
+/// reader is once the first after a step or an edit.
 struct Seen {
   std::vector<std::uint64_t> hashes;
   std::vector<double> totals;

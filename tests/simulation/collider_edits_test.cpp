@@ -62,12 +62,13 @@ TEST(ColliderEdits, ACrateFloatsAndABrickSinks) {
   s.add(crate("crate", 400, {0.1, 0.3, 0.2}));
   s.add(crate("brick", 1800, {0.3, 0.3, 0.2}));
   s.advance_to(1.5);
-  // Of a crate two fifths are under water, which has risen by what both displace.
+  // Two fifths of a crate are under water, which has risen by the volume that both displace.
   EXPECT_GT(s.collider("crate").twist.center.y, 0.11);
   EXPECT_LT(s.collider("brick").twist.center.y, 0.08);
   EXPECT_GT(s.collider("brick").twist.center.y, 0.055) << "on the floor";
   EXPECT_EQ(s.totals().particles, 20u * 20 * 6);
-  // What presses it up is the weight of the water that it displaces, less what the floor carries.
+  // The force on it is the weight of the water that it displaces, less the part that the floor
+  // carries.
   EXPECT_NEAR(s.collider("crate").force.y, 9.81 * s.collider("crate").mass, 4);
 }
 

@@ -107,7 +107,7 @@ TEST(Cut, OfAllOfABodyIsRefused) {
 TEST(Cut, IsKeptInASceneAndGoesWithItsCollider) {
   const std::string solids = "colliders: {post: {shape: " + post + "}, paddle: {shape: " + paddle + "}}\n";
   const model::Scene there = pool(block + ", cut: [post, paddle]", solids);
-  const auto again = scene::parse_scene_text(scene::emit_scene(there), "again.yaml");
+  const auto again = scene::parse_scene_text(scene::write_scene(there), "again.yaml");
   ASSERT_TRUE(again.ok()) << again.text();
   EXPECT_EQ(again.scene.bodies[0].cut, (std::vector<std::string>{"post", "paddle"}));
   EXPECT_NE(scene::scene_hash(there, scene::Part::simulation),

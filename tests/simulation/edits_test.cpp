@@ -71,7 +71,7 @@ TEST(Edits, NoForceOfTheOldLawIsLeft) {
       const Snapshot pressed = s.snapshot();
       const double before = s.totals().kinetic, dt = s.dt(), elastic = s.totals().elastic;
       ASSERT_GT(elastic, 5 * before);
-      // As it is, its stress accelerates it.
+      // Its own stress accelerates it.
       s.step();
       const double driven = s.totals().kinetic - before;
       ASSERT_GT(driven, 0.02 * before);

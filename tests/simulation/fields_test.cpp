@@ -64,7 +64,7 @@ TEST(LiquidsUnderFields, AreExpectedAsFastAsFallAndFieldsMakeThem) {
   EXPECT_NEAR(sound_of(channel(boxed("{min: [0.4, 0, 0], max: [9, 1, 1]}"))).speed, 0.1, 1e-9) << "the least";
   // Round and round it comes to the speed of the wind.
   EXPECT_NEAR(sound_of(channel(gust, ", periodic: [x]")).speed, std::sqrt(2 * (200 * 0.32 + 50)), 1e-6);
-  // What gives nothing is not reported.
+  // A field that gives nothing is not reported.
   const Sound still = sound_of(channel("fields: {air: {type: drag, rate: 5}}\n", "", "[0, -9.81, 0]"));
   EXPECT_EQ(still.notes, sound_of(channel("", "", "[0, -9.81, 0]")).notes);
 }

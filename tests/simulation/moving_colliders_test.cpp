@@ -206,7 +206,8 @@ TEST(MovingColliders, BitsDoNotDependOnThreadsSnapshotsOrCheckpoints) {
   std::filesystem::remove(file);
 }
 
-// What stands again is as if it had always stood there, and lets nothing through while it moves.
+// A gate that stands again is as if it had always stood there, and lets nothing through while it
+// moves.
 TEST(MovingColliders, AGateThatOpensStaysOpen) {
   Simulation s(parse_scene(scene("{min: [0, 0, 0], max: [0.6, 0.3, 0.12], spacing: 0.02}",
                                  "{type: newtonian, preset: water, bulk_modulus: 1.0e5}",

@@ -1,4 +1,4 @@
-// What is attached to a simulation: the files of `dreampm run`, through restarts too.
+// Observers attached to a simulation: the files of `dreampm run`, through restarts too.
 #include "dreampm/observers.h"
 
 #include <gmock/gmock.h>

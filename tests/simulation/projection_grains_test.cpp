@@ -74,7 +74,7 @@ TEST(ProjectionGrains, AColumnUnderWaterSlumpsToAHeapAsADryOneDoesAndStands) {
   const Heap later = heap_of(wet, "sand");
   EXPECT_NEAR(later.middle.y, heap.middle.y, 1e-3);
   EXPECT_NEAR(later.spread.x, heap.spread.x, 2e-3) << "it creeps";
-  // What fills the pores of the heap is missing above it.
+  // Water that fills the pores of the heap is missing above it.
   EXPECT_EQ(wet.particle_count(), count);
   const double level = 0.24 - (1 - packing) * 0.2 * 0.15 / 0.6;
   EXPECT_NEAR(heap_of(wet, "water").top, level, 0.02 * level);

@@ -1,4 +1,4 @@
-// What lies beside water in a projection, against exact values: rigid bodies, viscosity, elastic
+// Matter beside water in a projection, against exact values: rigid bodies, viscosity, elastic
 // matter, periodic axes, boxes that are full.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -296,7 +296,7 @@ TEST(ProjectionPeriodic, ABoxThatIsFullStaysStill) {
 }
 
 TEST(ProjectionForces, DampingLeavesWaterItsWeight) {
-  // What is damped comes to rest where it floats without.
+  // The damped body comes to rest where the other one floats.
   Box box;
   box.time = ", fps: 24, damping: 5";
   Simulation s = box_of(

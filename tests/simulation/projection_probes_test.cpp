@@ -44,7 +44,7 @@ probes:
 const std::string post = "{box: {min: [0.263, -0.1, 0.093], max: [0.296, 0.5, 0.144]}}";
 const std::string ball = "{sphere: {radius: 0.106}, center: [0.127, 0.123, 0.151]}";
 
-/// Of the second second.
+/// Returns the mean over the second second.
 double mean(const Simulation& s, const char* probe, const char* column) {
   const ProbeSeries& series = s.probe(probe);
   const auto c = std::find(series.columns.begin(), series.columns.end(), column) - series.columns.begin();

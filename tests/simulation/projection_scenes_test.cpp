@@ -73,7 +73,7 @@ const std::string tap_over_dam =
     "emitters: {tap: {material: water, shape: {box: {min: [0.26, 0.3, 0.06], max: [0.34, 0.34, 0.14]}}, velocity: "
     "[0, -0.5, 0], pool: 50000}}\nsinks: {drain: {shape: {box: {min: [0.3, -0.1, 0], max: [0.4, 0.03, 0.2]}}}}\n";
 
-// What the drain takes along, and gravity that turns meanwhile, are part of the state.
+// Outflow through the drain, and gravity that turns meanwhile, are part of the state.
 TEST(ProjectionScenes, ATapAndADrainHaveTheSameBitsOnAnyThreadsAndAgain) {
   std::set<std::uint64_t> ends;
   expect_same_bits(
@@ -163,7 +163,7 @@ TEST(ProjectionScenes, ASnapshotGoesOnToTheSameBits) {
   EXPECT_EQ(s.hash(), hash);
 }
 
-/// As dense as water.
+/// Returns a cork as dense as water.
 model::Collider cork(const Shape& shape) {
   model::Collider body{"cork", shape};
   body.friction = 0.4, body.rigid = {.density = 1000};

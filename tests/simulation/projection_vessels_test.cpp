@@ -35,7 +35,7 @@ std::string box(const Vec3d& min, const Vec3d& max) {
 struct Column {
   double height, fastest;
 };
-/// Of water that stood for a second.
+/// Returns the column of water that stood for a second.
 Column stands(const std::string& hollow, const std::string& water, double area) {
   Simulation s = vessel(fmt::format("{{difference: [{}, {}]}}", box({0.1, -0.1, 0.1}, {0.3, 0.7, 0.3}), hollow), water);
   const double height = static_cast<double>(s.particle_count()) * half_cell3 / area;
@@ -68,7 +68,7 @@ TEST(ProjectionVessels, WaterStandsInTubesOfAFewCells) {
 
 TEST(ProjectionVessels, NothingGoesThroughAWallOfACellAndAQuarter) {
   const Vec3d low{0.083, 0.107, 0.101}, high{0.311, 0.333, 0.313}, wall{1.25 * cell, 1.25 * cell, 1.25 * cell};
-  // What falls in it is thrown about by a gravity that turns.
+  // A gravity that turns throws the falling matter about in it.
   Simulation s = vessel(fmt::format("{{difference: [{}, {}]}}", box(low - wall, high + wall), box(low, high)),
                         box({0.09, 0.2, 0.11}, {0.2, 0.32, 0.3}), "");
   for (int n = 0; n < 8; ++n) {
@@ -147,7 +147,7 @@ TEST(ProjectionVessels, WhatIsInATipStaysInIt) {
   s.advance_to(2);
   const auto found = s.particles("water");
   for (const Vec3f& x : found.position) EXPECT_GT(x.y, 0.05f);
-  // What is held there does not gather speed.
+  // Liquid that is held there does not gather speed.
   for (const Vec3f& v : found.velocity) EXPECT_LT(length(v), 1.0f);
 }
 

@@ -14,7 +14,7 @@ using namespace test;
 
 constexpr double g = 9.81;
 
-/// Of the rows of a probe after `from` [s].
+/// Returns the mean over the rows of a probe after `from` [s].
 double mean(const Simulation& s, const char* probe, const char* column, double from) {
   const ProbeSeries& series = s.probe(probe);
   const auto c = std::find(series.columns.begin(), series.columns.end(), column) - series.columns.begin();

@@ -1,4 +1,4 @@
-// What is read of a simulation is what its physics says.
+// Values read from a simulation are those of its physics.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What is set in a simulation is read back: at once, after steps, from files, by both solvers.
+// Values set in a simulation are read back: at once, after steps, from files, by both solvers.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -321,7 +321,7 @@ TEST_P(Reads, AMomentIsLoadedWithTheObserversOfBefore) {
   simulation->advance_to(0.1);
   EXPECT_EQ(simulation->hash(), later);
   EXPECT_TRUE(steps > 0 && steps < whole && frames > 0) << steps << " " << whole << " " << frames;
-  // What cannot be loaded leaves all as it is; nor may an observer.
+  // A file that cannot be loaded leaves all as it is, and an observer may not load one.
   EXPECT_THROW(simulation->load(folder / "none.yaml"), InputError);
   EXPECT_EQ(simulation->hash(), later);
   simulation->on_step([&](const StepReport&) { simulation->load(folder / "then.yaml"); });

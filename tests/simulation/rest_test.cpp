@@ -1,4 +1,5 @@
-// What has fallen lies on what it fell on: half a spacing is what particles of their volume take.
+// Fallen matter lies on the surface that it fell on: half a spacing is the room of particles of
+// their volume.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// What rigid bodies meet: hollows, periodic copies, sequences of meshes, calm water.
+// Rigid bodies meet hollows, periodic copies, sequences of meshes, calm water.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>

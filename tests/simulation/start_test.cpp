@@ -153,7 +153,7 @@ TEST_F(Start, AFilmDrawsWhatWasDraggedWhereItStands) {
   ASSERT_EQ(record.frames.size(), 1U);
   ASSERT_EQ(record.frames[0].poses.count("slab"), 1U);
   EXPECT_EQ(record.frames[0].poses.at("slab").position.x, moved);
-  // Where red is, across the picture: as in a picture of the simulation itself.
+  // The red columns across the picture: as in a picture of the simulation itself.
   const auto red = [](RgbImage picture) {
     double sum = 0, all = 0;
     for (int y = 0; y < picture.height; ++y)

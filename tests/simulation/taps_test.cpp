@@ -102,7 +102,8 @@ Simulation drifting(const std::string& motion) {
   return of(tap_room("gravity: [0, 0, 0]\n" + tap(", motion: " + motion)));
 }
 
-// What comes in has the velocity of the shape besides its own, and comes in where the shape is.
+// Matter that comes in has the velocity of the shape besides its own, and comes in at the shape's
+// place.
 TEST(Taps, ThatMoveGiveWhereTheyAre) {
   Simulation s = drifting("{velocity: [-0.8, 0, 0]}");
   s.advance_to(0.2);
@@ -115,7 +116,7 @@ TEST(Taps, ThatMoveGiveWhereTheyAre) {
     low = std::min(low, view.position[i].x);
   }
   EXPECT_NEAR(low, 0.28 - 0.8 * 0.2 + 0.01, 0.012);
-  // As much as from one that stands.
+  // The amount is that of a tap that stands.
   Simulation still = of(tap_room("gravity: [0, 0, 0]\n" + tap()));
   still.advance_to(0.2);
   EXPECT_NEAR(double(view.size()), double(still.particle_count()), 0.02 * double(still.particle_count()));

@@ -32,7 +32,7 @@ __attribute__((noinline)) void take_back(void* p) { std::free(p); }
 
 void* operator new(std::size_t size) { return counted(size, alignof(std::max_align_t)); }
 void* operator new(std::size_t size, std::align_val_t a) { return counted(size, static_cast<std::size_t>(a)); }
-/// Of large pages (base/large_vector.h).
+/// The allocator of large pages (base/large_vector.h).
 extern "C" void* mmap(void* at, std::size_t size, int protection, int flags, int file, off_t from) noexcept {
   ++allocations;
   return reinterpret_cast<void*>(syscall(SYS_mmap, at, size, protection, flags, file, from));

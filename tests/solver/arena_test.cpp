@@ -1,5 +1,5 @@
-// Which nodes of an arena a particle reaches is worked out twice: by its stencil, and for a whole
-// block by the ends of its particles. Both have to say the same, or nodes that are given to are
+// The nodes of an arena that a particle reaches are worked out twice: by its stencil, and for a
+// whole block by the ends of its particles. Both have to agree, or nodes that are given to are
 // never added to the grid.
 #include "dreampm/backend/cpu/arena.h"
 

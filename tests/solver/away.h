@@ -24,7 +24,7 @@ void spoil(World<R>& world, Motion<R>& motion, MatterFields fields) {
     }
     if (includes(fields, MatterFields::state)) {
       for (auto& column : set.state) fill(column, nonsense);
-      for (auto& axis : set.own) fill(axis, nonsense);
+      for (auto& axis : set.own_velocity) fill(axis, nonsense);
     }
   }
   if (includes(fields, MatterFields::position)) fill(world.particle_blocks, Vec3i{});
@@ -102,7 +102,7 @@ class Away final : public Backend<R> {
       ParticleSet<R>& b = to.sets[s];
       if (includes(fields, MatterFields::id)) b.id = a.id;
       if (includes(fields, MatterFields::position)) b.u = a.u, b.block_start = a.block_start;
-      if (includes(fields, MatterFields::state)) b.state = a.state, b.own = a.own;
+      if (includes(fields, MatterFields::state)) b.state = a.state, b.own_velocity = a.own_velocity;
     }
     if (includes(fields, MatterFields::position)) to.particle_blocks = from.particle_blocks;
     if (includes(fields, MatterFields::nodes)) to.grid = from.grid;

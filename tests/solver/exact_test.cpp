@@ -14,7 +14,7 @@ namespace dreampm::exact_test {
 namespace {
 using namespace test;
 
-/// Of a still column after `settle` seconds of damping, over `watch` seconds.
+/// Returns the errors of a still column after `settle` seconds of damping, over `watch` seconds.
 validate::RowErrors column_errors(std::initializer_list<std::pair<std::string_view, double>> law, double settle,
                                   double watch) {
   const double dx = 0.02, spacing = dx / 2, g = 9.81, height = 0.4;

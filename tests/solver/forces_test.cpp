@@ -122,7 +122,7 @@ TEST(Fields, WorkIsWhatThePotentialLoses) {
     b.frame();
     const double lost = before - potential(), a = place > 1.5 ? strength : strength / 4;
     const double dt = b.world.time / static_cast<double>(b.world.step);
-    // As energy taken or given by half the square of a push in every step.
+    // The error is as large as an energy of half the square of a push in every step.
     const double squares = 0.5 * b.last.mass * a * a * dt * b.world.time;
     std::printf("work %.6g J, potential lost %.6g J, squares %.3g J\n", b.field_work, lost, squares);
     EXPECT_NEAR(b.field_work, lost, 0.1 * squares);

@@ -119,8 +119,8 @@ TEST(Liquid, DoesNotLeakPastALidAlongTheWalls) {
   EXPECT_EQ(above, 0);
 }
 
-/// Where an elastic cube of 4 cells is after `time`: its center above the level of the liquid, in
-/// cells. It starts half sunk, the draft of half the liquid's density.
+/// Returns the height of the center of an elastic cube of 4 cells after `time`, above the level of
+/// the liquid, in cells. The cube starts half sunk, the draft of half the liquid's density.
 double floating_height(double density, double time) {
   const Vec3i cells{12, 16, 12};
   const double level = 6 * dx, side = 4 * dx;

@@ -40,8 +40,8 @@ World<R> full_box(const std::vector<Matter>& layers, std::vector<std::vector<Par
   return w;
 }
 
-// Where the grid knew masses alone, the light layer would read as too dense and the heavy one as
-// too loose, and both would press or part until they moved.
+// If the grid knew masses alone, the light layer would read as too dense and the heavy one as too
+// loose, and both would press or part until they moved.
 TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
   std::vector<std::vector<ParticleSeed>> seeds;
   World<double> w = full_box<double>({{"newtonian", 1000}, {"newtonian", 100}}, seeds);
@@ -56,8 +56,8 @@ TEST(Mixture, LiquidsOfDifferentDensitiesLieStill) {
   EXPECT_LT(moved, 1e-9);
 }
 
-// Of densities that differ by next to nothing volumes show what masses do, in a flow that shears
-// and parts.
+// Volumes give the same result as masses for densities that differ by next to nothing, in a flow
+// that shears and parts.
 TEST(Mixture, VolumesTellWhatMassesDoOfOneDensity) {
   for (const std::string_view material : {"newtonian", "sand", "viscoplastic"}) {
     const auto flown = [&](double density) {

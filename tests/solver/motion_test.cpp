@@ -97,7 +97,7 @@ double slide_on_plane(WallType type, double friction, double degrees, double tim
   for (int i = -10; i < 10; ++i)
     for (int j = 0; j < 5; ++j)
       for (int k = -8; k < 8; ++k) {
-        // As it lies on the plane: a block that drops bounces, and friction does not hold it in the
+        // The block lies on the plane: one that drops bounces, and friction does not hold it in the
         // air.
         const Vec3d p =
             point + along * ((i + 0.5) * spacing) + normal * ((j + 0.5) * spacing) + side * ((k + 0.5) * spacing);

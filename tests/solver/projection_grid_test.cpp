@@ -1,4 +1,4 @@
-// What a projection is made of: rows of cells, the surface, transfers, the pressure equation.
+// The parts of a projection: rows of cells, the surface, transfers, the pressure equation.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -109,7 +109,7 @@ TEST(CellRows, RowsAreThereWhereTheirCellsAreWanted) {
 
 TEST(LiquidSurface, TheDepthUnderAFlatSurfaceIsExact) {
   for (const double depth : {-0.9, -0.5, -0.1, 0.1, 0.5, 0.9}) {
-    // What a tent of unit width on each side reads of the half-space below `depth`.
+    // The reading of a tent of unit width on each side over the half-space below `depth`.
     const double read = depth > 0 ? 1 - 0.5 * (1 - depth) * (1 - depth) : 0.5 * (1 + depth) * (1 + depth);
     EXPECT_NEAR(depth_of(read), depth, 1e-12) << depth;
   }

@@ -52,7 +52,7 @@ struct Flow {
     double sum = 0;
     const auto& set = world.sets[0];
     for (std::size_t p = 0; p < set.size(); ++p)
-      for (const auto& v : set.own) sum += static_cast<double>(v[p] * v[p]);
+      for (const auto& v : set.own_velocity) sum += static_cast<double>(v[p] * v[p]);
     return std::sqrt(sum / static_cast<double>(set.size()));
   }
   /// The mean density of the cells that have liquid on all sides, over that at rest.

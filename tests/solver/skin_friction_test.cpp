@@ -45,7 +45,7 @@ TEST(SkinFriction, IsTheShearOfASmoothWall) {
                 r.grid.walls[2].impulse.x, want);
     EXPECT_NEAR(r.grid.walls[2].impulse.x, want, 0.01 * std::abs(want));
     EXPECT_NEAR(r.grid.walls[2].impulse.z, 0, 1e-6 * std::abs(want));
-    // What it takes turns to heat: its impulse times the sliding.
+    // The work of friction turns to heat: its impulse times the sliding.
     EXPECT_NEAR(r.grid.walls[2].work, r.grid.walls[2].impulse.x * speed, 0.01 * std::abs(want) * speed);
   }
 }
@@ -99,7 +99,7 @@ double lost_by_honey(int deep, double depth, double thick, double time, double d
   return lost;
 }
 
-/// Of the momentum of a layer that stands still on a wall from now on, what viscosity has taken;
+/// Returns the momentum that viscosity takes from a layer that stands still on a wall from now on;
 /// exact for a free surface at its top.
 double lost_to_no_slip(double depth, double thick, double time) {
   double lost = 1;

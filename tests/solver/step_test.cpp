@@ -1,4 +1,4 @@
-// What step() itself does, over a backend whose answers are fixed: the order of the phases, when
+// The function step() itself, over a backend whose answers are fixed: the order of the phases, when
 // they are due, the texts of failures, the clock, and the sums that are left to it.
 #include <gtest/gtest.h>
 
@@ -165,7 +165,7 @@ TEST(Step, StagesGiveTheirHeatAndTheirRounding) {
   EXPECT_EQ(staged.pass.energy.viscous, 3.5);
   EXPECT_GT(explicitly.rounding, 0);
   EXPECT_DOUBLE_EQ(staged.rounding, 5 * explicitly.rounding);
-  // What the grid did not give to the particles, and gravity on all of the mass.
+  // The momentum that the grid did not give to the particles, and gravity on all of the mass.
   EXPECT_EQ(staged.transfer, 3);
   EXPECT_DOUBLE_EQ(staged.body.impulse.y, -10 * dt * w.sets[0].mass);
 }

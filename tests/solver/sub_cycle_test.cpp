@@ -42,7 +42,7 @@ StepBound bound(double ratio, int contacts = 0, double dt_max = 1) {
                    dt_max);
 }
 
-/// What a second of motion costs, in steps without stages.
+/// Returns the cost of a second of motion, in steps without stages.
 double cost(const StepBound& b, double ratio, int contacts = 0) {
   return (1 + stage_cost * stages_of(b.dt, cell, ratio * unit / (0.5 * cell / 10), contacts)) / b.dt;
 }
@@ -61,7 +61,7 @@ TEST(SubCycle, AStepIsExplicitWhereThatIsCheaperAndStagedWhereNot) {
   EXPECT_EQ(bound(1000).limiter, Limiter::viscosity);
 }
 
-/// Of what is left of a frame, or a hair less than it takes, nothing is left for another step.
+/// The rest of a frame, or a hair less than it, leaves nothing for another step.
 TEST(SubCycle, TheEndOfAFrameIsOneStep) {
   const SignalSpeeds f{.speed = 1, .wave = 9 / wave_margin, .viscosity = 100 * unit / (0.5 * cell / 10), .contacts = 1};
   const double all = stable_dt(0.5, cell, f, 1).dt;
@@ -278,8 +278,8 @@ struct Sheared {
   }
 };
 
-// As often as the time is cut in two, what a wall or a solid takes in stages comes closer to what
-// it takes in many short steps, particles where they are: by first order.
+// Each halving of the time step brings the impulse on a wall or a solid in stages closer to that in
+// many short steps, with particles where they are: by first order.
 TEST(SubCycle, ViscousContactIsOneOfTheForcesOfAStage) {
   constexpr double time = 2.5e-4;
   for (const bool on_solid : {false, true}) {

@@ -60,8 +60,8 @@ struct Tank {
   void move(const Vec3d& v) {
     for (Node<double>& node : world.grid.nodes) set_velocity(node, v);
   }
-  /// What a pressure of 1 Pa gives to all nodes in 1 s: -1/m_i times the integral of w_i n over the
-  /// surface.
+  /// Gives to all nodes the momentum of a pressure of 1 Pa in 1 s: -1/m_i times the integral of w_i
+  /// n over the surface.
   void press() {
     move({});
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b)
@@ -80,7 +80,7 @@ struct Tank {
         }
       }
   }
-  /// What the collider gave [N s].
+  /// Returns the impulse that the collider gave [N s].
   Vec3d touch() {
     for (std::size_t b = 0; b < found.size(); ++b) {
       found[b].sums.mass = 0;
@@ -119,7 +119,7 @@ TEST(SurfaceContact, HoldsWhatPressesHoweverTheSurfaceLies) {
     }
 }
 
-// Of a stream against its face a box takes what meets the face, to half a cell at each edge.
+// A box in a stream stops the part that meets its face, to half a cell at each edge.
 TEST(SurfaceContact, AnEdgeStopsNoMoreThanItsFace) {
   const auto taken = [](const Shape& shape) {
     Tank tank(shape, WallType::separate);

@@ -89,7 +89,7 @@ TEST(Transfer, MomentumIsKeptBetweenSetsOfDifferentTransfers) {
     const Balance start = balance(w, initial_velocities(w, {one, other}));
     Motion<double> motion;
     for (int i = 0; i < 100; ++i) {
-      // What a memory keeps changes with the step.
+      // The kept share of a memory changes with the step.
       w.settings.fixed_dt = i % 3 == 0 ? 5e-4 : i % 3 == 1 ? 1e-4 : 2e-5;
       step(w, *backend, &motion);
     }
@@ -208,9 +208,9 @@ TEST(Transfer, ApicIsTheSameBesideAsflipAndStoresNothing) {
     return w;
   };
   const World<float> plain = made(false), mixed = made(true);
-  EXPECT_TRUE(plain.grid.velocity_old[0].empty() && plain.sets[1].own[0].empty());
-  EXPECT_TRUE(mixed.sets[0].own[0].empty());
-  EXPECT_EQ(mixed.sets[1].own[0].size(), mixed.sets[1].size());
+  EXPECT_TRUE(plain.grid.velocity_old[0].empty() && plain.sets[1].own_velocity[0].empty());
+  EXPECT_TRUE(mixed.sets[0].own_velocity[0].empty());
+  EXPECT_EQ(mixed.sets[1].own_velocity[0].size(), mixed.sets[1].size());
   const auto x = positions_by_id(plain), y = positions_by_id(mixed);
   double elastic = 0, snow = 0;
   for (std::size_t i = 0; i < x.size(); ++i) {

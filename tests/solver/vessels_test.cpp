@@ -67,7 +67,7 @@ TEST(Vessels, NothingPassesAPlateThatEndsOnTheWalls) {
   EXPECT_EQ(
       lost(make_cpu_backend(), {box({0.183, 0, 0}, {0.207, 0.28, 0.12})}, water, side, 1, "newtonian", {1, 0.95, 1}),
       0);
-  // Of two parts.
+  // The wall is of two parts.
   EXPECT_EQ(lost(make_cpu_backend(),
                  {box({0.183, 0, 0}, {0.207, 0.07, 0.12}), box({0.183, 0.07, 0}, {0.207, 0.28, 0.12})}, water, side, 1),
             0);

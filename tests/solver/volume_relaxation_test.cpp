@@ -84,7 +84,7 @@ double pressing(double relaxation) {
 
 TEST(VolumeRelaxation, RowsAtASurfacePressHoweverOften) {
   const double now = pressing(1), always = pressing(10);
-  std::printf("the uppermost cell presses with %.3f of its weight; anchored in every step, and more: %.3f\n", now,
+  std::printf("the uppermost cell presses with %.3f of its weight; relaxed in every step, and more: %.3f\n", now,
               always);
   for (const double pressed : {now, always}) EXPECT_NEAR(pressed, 1, 0.25);
 }

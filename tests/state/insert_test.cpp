@@ -55,7 +55,7 @@ void mark(ParticleSet<float>& set) {
 /// All columns of a particle, in bits that can be compared.
 std::vector<float> row(const ParticleSet<float>& set, std::size_t p) {
   std::vector<float> all{static_cast<float>(set.id[p])};
-  for (const auto* columns : {&set.u, &set.own})
+  for (const auto* columns : {&set.u, &set.own_velocity})
     for (const auto& column : *columns)
       if (!column.empty()) all.push_back(column[p]);
   for (const auto& column : set.state) all.push_back(column[p]);
@@ -194,12 +194,14 @@ TEST(TakeOut, SumsWhatSinksTakeToTheSameBitsOnAnyThreads) {
     Vec3d momentum;
     for (const ParticleSet<float>& set : w.sets)
       for (std::size_t p = 0; p < set.size(); ++p)
-        momentum += static_cast<Vec3d>(Vec3f{set.own[0][p], set.own[1][p], set.own[2][p]}) * set.mass;
+        momentum += static_cast<Vec3d>(Vec3f{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}) *
+                    set.mass;
     w.step = 1;
     regroup(w);
     for (const ParticleSet<float>& set : w.sets)
       for (std::size_t p = 0; p < set.size(); ++p)
-        momentum -= static_cast<Vec3d>(Vec3f{set.own[0][p], set.own[1][p], set.own[2][p]}) * set.mass;
+        momentum -= static_cast<Vec3d>(Vec3f{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}) *
+                    set.mass;
     const Sink& sink = w.sinks[0];
     EXPECT_GT(sink.taken, 1000u);
     EXPECT_EQ(w.left, sink.taken);

@@ -83,7 +83,7 @@ void stir(World<float>& w, std::uint64_t round) {
   w.drift = 0.9;
 }
 
-/// Where the particle is after a sort, by its definition. Cells come in rows along z, the rows of
+/// The place of a particle after a sort, by its definition. Cells come in rows along z, the rows of
 /// every second plane in reverse, so that each lies beside the one before.
 struct Place {
   Vec3i block;
@@ -114,7 +114,7 @@ using Columns = std::vector<LargeVector<float>>;
 Columns columns_of(const ParticleSet<float>& set) {
   Columns all(set.u.begin(), set.u.end());
   all.insert(all.end(), set.state.begin(), set.state.end());
-  all.insert(all.end(), set.own.begin(), set.own.end());
+  all.insert(all.end(), set.own_velocity.begin(), set.own_velocity.end());
   return all;
 }
 

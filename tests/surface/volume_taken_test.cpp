@@ -10,7 +10,7 @@ namespace {
 
 constexpr float h = 0.01f;
 
-/// What a cloud takes over what it has at rest, in a box whose sides and floor are walls if
+/// Returns the volume of a cloud over that at rest, in a box whose sides and floor are walls if
 /// `walled`.
 double taken(const std::vector<Vec3f>& points, const Vec3f& size, bool walled) {
   SurfaceInput in;

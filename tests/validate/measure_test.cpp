@@ -1,4 +1,4 @@
-// What measures must be right where the answer is known.
+// Measures must be right where the answer is known.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -49,8 +49,8 @@ TEST(Page, LeavesOutCasesThatAreNoLongerThere) {
   EXPECT_THAT(page, Not(HasSubstr("slopes")));
 }
 
-/// Those of `--quick` are run again for each version; of the long ones the page says which made
-/// them.
+/// The cases of `--quick` are run again for each version; the page names the version of the long
+/// ones.
 TEST(Page, IsOfThisVersion) {
   const std::string page = read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs/validation.md");
   for (const Case* c : all_cases()) {

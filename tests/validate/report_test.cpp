@@ -92,7 +92,7 @@ const Case misses{
     "misses", "a gate that is missed", "nowhere", true, [](Trial& t) {
       t.at_most("too much", 2, 1, "m").known("it is meant to", 1.5);
       t.control("wrong", "too much", 3);
-      t.chose("What was chosen, and why.");
+      t.note_choice("What was chosen, and why.");
       t.set_up("scene", "of water");
       t.set_up("scene", "of honey, for a control");
       t.plot({"misses", "A <plot>", "x", "y", {{"ours", {0, 1, 2}, {0, 1, NAN}}, {"them", {0}, {5}, true}}});
@@ -119,7 +119,7 @@ const Case blind{"blind", "a gate that lets everything pass", "nowhere", true, [
                    t.control("nothing", "anything", 0.5);
                  }};
 
-const Case trusting{"trusting", "a gate that nothing wrong was held against", "nowhere", true, [](Trial& t) {
+const Case trusting{"trusting", "a gate that nothing wrong was compared with", "nowhere", true, [](Trial& t) {
                       t.at_most("judged", 0, 1);
                       t.control("wrong", "judged", 2);
                       t.at_most("believed", 0, 1);
@@ -201,7 +201,7 @@ TEST(Report, RealCasesPass) {
   }
 }
 
-/// What the page says of a scene is what the scene says.
+/// The page describes a scene as the scene does.
 TEST(Report, ASetUpNamesMatterCellsAndWalls) {
   const auto set_up = [](const std::vector<std::string>& overrides, const char* name = "dam-break-1") {
     const model::Scene scene = built_in_scene(name, overrides);

@@ -18,7 +18,7 @@ double volume_of(const TriMesh& mesh) {
   return six / 6;
 }
 
-/// Of the area of a circle, the share of a regular polygon of `corners` corners.
+/// Returns the share of a regular polygon of `n` corners in the area of a circle.
 double part_of_a_circle(int n) { return n / (2 * std::numbers::pi) * std::sin(2 * std::numbers::pi / n); }
 
 TEST(Revolve, ARingHasTheVolumeOfPappus) {

@@ -5,15 +5,15 @@
 
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/pipeline/strict.h"
-#include "validate/draw.h"
+#include "validate/random_scene.h"
 
 namespace dreampm::validate {
 namespace {
 namespace fs = std::filesystem;
 
-/// What stops the strict run of a draw; empty if nothing does.
+/// Returns the reason that stops the strict run of a draw; empty if there is none.
 std::string stopped_by(int draw, const std::string& backend, int frames) {
-  model::Scene scene = draw_scene(1, draw).scene;
+  model::Scene scene = random_scene(1, draw).scene;
   scene.output.checkpoint_every = 0;
   SimulateOptions options;
   options.folder = fs::path(DM_BINARY_DIR) / "test-files" / ("strict-draw-" + backend + std::to_string(draw));

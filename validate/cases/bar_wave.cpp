@@ -8,7 +8,7 @@ namespace bar_wave_case {
 namespace {
 
 void run(Trial& t) {
-  t.chose("The liquid has p = K (1 - J) (gamma: linear), may pull and is not anchored: for it the wave is exact.");
+  t.note_choice("The liquid has p = K (1 - J) (gamma: linear), may pull and is not relaxed: for it the wave is exact.");
   const BarWave solid = ring_bar(t, "bar-wave-elastic", 64), liquid = ring_bar(t, "bar-wave-liquid", 64);
   const auto judge = [&](const std::string& name, const BarWave& wave, const char* scene, const char* what,
                          const std::string& stiffer) {

@@ -82,12 +82,12 @@ std::string error_in(const char* name, int cells) {
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "{0} particles along an edge of a cell, {1} a cell, instead of the usual two: a thin beam that turns against the "
       "grid is softer the fewer points integrate its stress. 4 along an edge with --full, 3 without; with two it bends "
       "too far by another 6 % in 4 cells (reported below with --full).",
       t.full() ? full_across : quick_across, t.full() ? 64 : 27));
-  t.chose(
+  t.note_choice(
       "A slab one cell thick between mirroring walls: plane strain. Clamped by a sticking wall on a plane of nodes.");
   const Table exact = reference_table("turek_hron_csm.csv").where("note", "use this");
   std::vector<int> sizes{4};

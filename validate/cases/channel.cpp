@@ -21,7 +21,7 @@ Flow flow(Trial& t, double seconds, const std::vector<std::string>& overrides = 
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Sheared by 22 /s. As long as particles were shifted by all second differences of the nodes' masses, those "
       "of chance too, they were driven together between overfull nodes: 28 % lay in clumps after 8 s.");
   const Flow flows = flow(t, 10);
@@ -35,8 +35,8 @@ void run(Trial& t) {
           "beside colliders; which of the changes since does it is not known.",
           0.035);
   const Flow pulls = flow(t, 6, {"materials.water.tension=true", "materials.water.relaxation=10"});
-  t.control("water that pulls, anchored ten times as strongly, 6 s", clumps, pulls.clumps);
-  t.control("no anchoring, 6 s", rows, flow(t, 6, {"materials.water.relaxation=0"}).rows);
+  t.control("water that pulls, relaxed ten times as strongly, 6 s", clumps, pulls.clumps);
+  t.control("no volume relaxation, 6 s", rows, flow(t, 6, {"materials.water.relaxation=0"}).rows);
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ struct Motion2 {
     f(1, 1) += s * y.size * y.along * std::cos(y.across * pi * X.x) * std::cos(y.along * pi * X.y);
     return f;
   }
-  /// Where what is at `at` now came from, by Newton's method; F stays well above 0.
+  /// Returns the initial place of the matter that is at `at` now, by Newton's method; F stays well
+  /// above 0.
   Point origin_of(const Point& at, double t) const {
     Point X = at;
     for (int i = 0; i < 8; ++i) {
@@ -108,7 +109,7 @@ Point body_force(const Motion2& motion, const Stress& stress, double density, co
   return {swing * u.x - (e.x - w.x + n.x - s.x) * per, swing * u.y - (e.y - w.y + n.y - s.y) * per};
 }
 
-/// What a slab is made of and how it is moved.
+/// A slab: its matter, and how it is moved.
 struct Slab {
   const char *name, *material;
   Motion2 motion;
@@ -198,9 +199,9 @@ Curve in_logs(std::string name, const std::vector<double>& cells, const std::vec
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "Errors stand with their signs, and orders pair by pair beside that of a fit. The vortex lies at random points, "
-      "whose unevenness the anchoring reads as pressure: nine draws at 64 cells gave decay rates 0.23 % apart "
+      "whose unevenness volume relaxation reads as pressure: nine draws at 64 cells gave decay rates 0.23 % apart "
       "(standard deviation) around an error of 0.01 %, and one draw alone once gave orders of 2.9 and 0.64 between "
       "pairs of grids. So its errors are means over {} draws, and count in an order and in the plot at least with "
       "their standard error. Neither the time step nor the Mach number makes the floor: half of either moved one draw "
@@ -209,12 +210,12 @@ void run(Trial& t) {
       "0.31 and 0.56 % with an order of 1.44: filled 1 % over rest density, the liquid then had 1 % less kinematic "
       "viscosity than the exact solution.",
       vortex_draws));
-  t.chose(
+  t.note_choice(
       "Manufactured solutions: the body force is P of the library's own law, differentiated by central differences; "
       "every node gets it before each step. F is diagonal in the first, with shear and rotation in the others. All of "
       "them stay elastic, and a run in which one yields fails: snow and seed are clamped far out, sand has 100 kPa of "
       "cohesion, the viscoplastic solid 1 MPa of yield stress. Sand and the viscoplastic solid let go when they are "
-      "pulled apart by a tenth: they sway without swelling, and are anchored as ever.");
+      "pulled apart by a tenth: they sway without swelling, and are relaxed as ever.");
   const char *const cells_axis = "log2 of cells a side", *const error_axis = "log10 of the relative error";
   Plot known{"convergence", "Errors by resolution", cells_axis, error_axis, {}};
   Plot made_up{"manufactured", "Errors of manufactured solutions by resolution", cells_axis, error_axis, {}};
@@ -243,8 +244,8 @@ void run(Trial& t) {
   study(known, of_vortex, vortex, [&](int n) { return rate_error(vortex_decays(t, n, 0.1)); });
   study(known, of_bar, bar, [&](int n) { return Mean{ring_bar(t, "bar-wave-elastic", n).period - 1}; });
   for (const Slab& s : slabs) study(made_up, of(s), slab, [&](int n) { return Mean{manufactured_error(t, s, n)}; });
-  // What converges to something else has no order. Without its force a slab swings on its own, at
-  // another frequency.
+  // A series that converges to something else has no order. Without its force a slab swings on its
+  // own, at another frequency.
   const auto order = [](const std::string& name) { return name + ": order"; };
   t.control("a fifth less viscosity", order(of_vortex),
             order_of({16, 32}, {vortex_decay(t, 16, 0.1, {.factor = 0.8}).rate - 1,

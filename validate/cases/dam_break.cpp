@@ -12,7 +12,8 @@ namespace {
 
 constexpr double g = 9.81, a = 0.05715;
 
-/// In the experiment's units: T = n t sqrt(g/a), Z = x/a; tau = t sqrt(g/a), H = h/(n^2 a).
+/// The fall of a column in the experiment's units: T = n t sqrt(g/a), Z = x/a; tau = t sqrt(g/a), H
+/// = h/(n^2 a).
 struct Fall {
   std::vector<double> front_time, front, height_time, height;
 };
@@ -74,8 +75,8 @@ double height_error(const Fall& f, const Table& rows) {
 std::string at(int n2, int cells) { return fmt::format("n^2 = {}, a/{}: ", n2, cells); }
 const char *const rms = "rms error of the front, best shift", *const high = "worst error of H for tau <= 2.45";
 
-/// What of the experiment a column is compared with. Fronts are published as a table (n^2 = 2) or
-/// read from its plot (n^2 = 1).
+/// The part of the experiment with which a column is compared. Fronts are published as a table (n^2
+/// = 2) or read from its plot (n^2 = 1).
 struct Measured {
   Table heights, fronts, table;
   double end;  ///< of T
@@ -108,7 +109,7 @@ void add_experiment(Plot& plot, const Measured& measured) {
 void run_projection(Trial& t) {
   constexpr int draws = 5;
   const std::string mean = fmt::format(", mean of {} draws", draws);
-  t.chose(
+  t.note_choice(
       "Walls as in dam-break; 200 frames a second, which steps end at. The front is where a slab is half full: by the "
       "places of jittered particles its error of n^2 = 1 differs by half a per cent from draw to draw.");
   const auto by = [](std::vector<std::string> more = {}) {
@@ -158,11 +159,11 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Floor and back wall slip and have the skin friction of a smooth wall, and particles are jittered, both since "
       "commit c4adf5d. Before, the floor stuck, the back wall slipped, and particles lay on a lattice. Without skin "
       "friction n^2 = 1 runs too fast and misses its gate at a/16 (reported below with --full).");
-  t.chose("Hydrostatic pressure at the start, as the diaphragm holds the column.");
+  t.note_choice("Hydrostatic pressure at the start, as the diaphragm holds the column.");
   for (const int n2 : {1, 2}) {
     // The long series of n^2 = 2 read from figure 3 is reported too.
     const Measured measured(n2);
@@ -187,8 +188,8 @@ void run(Trial& t) {
       plot.curves.push_back({fmt::format("front, a/{}", cells), f.front_time, f.front});
       plot.curves.push_back({fmt::format("height, a/{}", cells), f.height_time, f.height});
       if (cells == 16 && t.full()) {
-        // What the skin friction of the floor and of the wall behind does: without it a column runs
-        // too fast at any resolution.
+        // Skin friction of the floor and of the wall behind matters: without it a column runs too
+        // fast at any resolution.
         const Fall smooth =
             fall(t, n2, cells, end, {"space.walls.floor.skin_friction=false", "space.walls.x_min.skin_friction=false"});
         t.report(name + "the same without skin friction", front_error(smooth, table, best_shift(smooth, table)), "%");

@@ -55,7 +55,7 @@ Errors against(const Table& exact, const Axes& ours) {
 void run(Trial& t) {
   const Table exact = reference_table("elliptical_drop_monaghan1994.csv");
   const double end = exact.numbers("t").back();
-  t.chose("Semi-axes by second moments, against those of the disk of particles at the start.");
+  t.note_choice("Semi-axes by second moments, against those of the disk of particles at the start.");
   const Axes ours = axes(t, end);
   const Errors e = against(exact, ours);
   t.at_most("worst error of a semi-axis", e.axis, 0.02, "%");
@@ -63,7 +63,8 @@ void run(Trial& t) {
   // Honey thick enough to brake the stretching: Re = 1.
   t.control("viscosity of Re = 1", "worst error of a semi-axis",
             against(exact, axes(t, end, {"materials.liquid.viscosity=100"})).axis);
-  // As fast as its own sound, 140 m/s: the pressure that keeps it an ellipse squeezes it.
+  // The flow is as fast as its own sound, 140 m/s: the pressure that keeps it an ellipse squeezes
+  // it.
   t.control("a hundredth of the bulk modulus", "worst error of the area",
             against(exact, axes(t, end, {"materials.liquid.bulk_modulus=1.96e4"})).area);
   t.plot({"elliptical-drop",

@@ -100,7 +100,7 @@ double farthest(const std::vector<double>& values, double want) {
   return worst;
 }
 
-/// Of the frames from when it has settled.
+/// Returns the values of the frames after it has settled.
 std::vector<double> at_rest(const Rest& r, const std::vector<double>& values) {
   const auto first = std::lower_bound(r.time.begin(), r.time.end(), settled - 1e-6);
   return {values.begin() + (first - r.time.begin()), values.end()};
@@ -121,17 +121,17 @@ Curve course_of(const Rest& r, std::string name) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The cubes of 500 and 1400 kg/m^3 are let go with half their height under water, the draft of the first. It is "
       "judged by its worst frame (ten a second) from there on, no settling and no average. With a face up a cube of "
       "half the water's density is not stable (its metacenter is 2.5 cm under its center): from 40 s on it rolls, out "
       "of rounding errors, through an edge to a corner up. By symmetry its center is at the water's level in every "
       "attitude, and a draft is what a cube with a face up would have.");
-  t.chose(
+  t.note_choice(
       "The volume of the water follows from its mean height, with a flat surface around the cube as it lies. It is "
       "judged by its worst frame from 1 s on, when the heavy cube lies: that takes it 0.7 s, and while it falls the "
       "surface is not flat.");
-  t.chose(
+  t.note_choice(
       "The gate of the heavy cube is that it lies a quarter of a cell over the floor at most. Two runs beside it show "
       "where it lies without water: dropped in a dry basin, and put down on the floor of a filled one. Its lower face "
       "is that of a cube around the mean of its particles.");
@@ -202,7 +202,7 @@ std::vector<std::string> at_its_draft(double density) {
 }
 
 void run_projection(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The cube of 900 kg/m^3 is let go at its draft, that of 1200 with half its height under water. The first is "
       "judged by its worst frame (ten a second), the second by its worst from 1.5 s on, when it lies. The volume of "
       "the "

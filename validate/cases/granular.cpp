@@ -104,10 +104,10 @@ struct Column {
 };
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "One friction for both columns, stated beforehand: sin phi = 0.32, rising by 0.28 with I0 = 0.4, and the grains' "
       "size, all of Lagree et al. 2011; matched in plane strain. The right half, on a floor that sticks.");
-  t.chose(
+  t.note_choice(
       "The control's mu = 2 is Coulomb's coefficient, tan phi: 63.4 degrees. As the ratio of shear to mean pressure in "
       "the plane, which the 0.32 of Lagree et al. is, mu = sin phi: grains without cohesion have no more than 1.");
   const Column columns[] = {

@@ -95,7 +95,7 @@ Flow flow_of(Trial& t, const std::vector<std::string>& overrides = {}, Plot* plo
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "280 Pa s, 33 times honey, so that the limit of explicit viscosity is far below that of sound; 16 cells from "
       "plate to plate. Walls mirror the matter before them, the other axes have no end.");
   Plot plot{
@@ -123,7 +123,7 @@ void run(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose(
+  t.note_choice(
       "280 Pa s, 33 times honey; 16 cells from plate to plate. Once in steps as long as frames, 1.4 H^2/(pi^2 nu), "
       "until the flow is steady; then in steps of a hundredth of those, through its start. What gravity gives in a "
       "long "

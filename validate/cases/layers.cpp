@@ -17,7 +17,7 @@ struct Left {
   std::vector<double> rows;  // of nodes, without those beside floor and surface
 };
 
-/// After `time` [s].
+/// Returns the state after `time` [s].
 Left leave(Trial& t, double time, const std::vector<std::string>& overrides = {}) {
   ValidationRun<float> run(t, "layers", overrides);
   run.begin();
@@ -41,8 +41,8 @@ Curve profile(std::string name, const Left& left) {
 }
 
 void run(Trial& t) {
-  t.chose("As a scene gets it that asks for nothing more: jittered, and not pressed at the start.");
-  t.chose(
+  t.note_choice("As a scene gets it that asks for nothing more: jittered, and not pressed at the start.");
+  t.note_choice(
       "Their densities are measured by volume. When the grid knew only the mass of both, a liquid of 200 kg/m^3 on "
       "water rose by 9 % of the depth in 5 s, and rows beside the border were off by 8 %.");
   const double time = t.full() ? 60 : 10;

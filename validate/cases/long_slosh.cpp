@@ -52,7 +52,7 @@ Slosh slosh(Trial& t, int cells, int periods, const std::vector<std::string>& ov
 }
 
 void run(Trial& t) {
-  t.chose("A crest of 1.5 cells, k a = 0.07, as LIQUID asks; sound is 10 sqrt(2 g H).");
+  t.note_choice("A crest of 1.5 cells, k a = 0.07, as LIQUID asks; sound is 10 sqrt(2 g H).");
   const Slosh s = slosh(t, 64, 20);
   t.at_most("error of the period", std::abs(s.period - 1), 0.01, "%");
   const char* const depth = "depth over the last period, change";

@@ -110,7 +110,7 @@ Curve filtered(std::string name, const std::vector<double>& time, const std::vec
   return c;
 }
 double peak(const Curve& c) { return *std::max_element(c.y.begin(), c.y.end()); }
-/// When a tenth of the reference's peak is first passed.
+/// Returns the time at which a tenth of the reference's peak is first passed.
 double arrival(const Curve& c, double reference_peak) {
   for (std::size_t i = 0; i < c.x.size(); ++i)
     if (c.y[i] > 0.1 * reference_peak) return c.x[i];
@@ -137,8 +137,8 @@ void add_experiment(Plot& plot, const Table& heights) {
 void run_projection(Trial& t) {
   const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
-  t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
-  t.chose("50 frames a second, which steps end at: what samples ask for. P2 is the pressure of cells, reported.");
+  t.note_choice("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
+  t.note_choice("50 frames a second, which steps end at: what samples ask for. P2 is the pressure of cells, reported.");
   const auto run = [&](int cells, double end, std::vector<std::string> more = {},
                        const std::function<void(World<float>&)>& change = {}) {
     more.push_back("time.fps=50");
@@ -187,8 +187,8 @@ void run_projection(Trial& t) {
 void run(Trial& t) {
   const Table heights = reference_table("kleefsman_2005_spheric2_heights.csv");
   const Table pressures = reference_table("kleefsman_2005_spheric2_pressures.csv");
-  t.chose("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
-  t.chose(
+  t.note_choice("Half of the tank, mirrored in a wall that slips at z = 0. Heights by the volume over 2 x 2 cells.");
+  t.note_choice(
       "asflip since commit 1f196df; before, apic. Behind the box is what two sheets of water bring, over it and around "
       "it, as high as they climb the wall; in cells of 5 cm they are half a cell to two cells thin. There apic loses "
       "three tenths of the energy that falls in the first second, and one sixth in cells half as wide: too little "
@@ -237,8 +237,8 @@ void run(Trial& t) {
     const std::string coarse = cells == 64 ? "" : ", dx = 0.050";
     for (int k = 0; k < 4; ++k)
       t.control("a tenth of gravity, 2 s" + coarse, height_at(cells, k), error(slow, k, heights));
-    t.control("no anchoring, 3 s" + coarse, spacing(cells) + volume_late, std::abs(swelling(loose, 2, 3)));
-    t.control("no anchoring, 3 s" + coarse, spacing(cells) + volume_worst, most_swollen(loose));
+    t.control("no volume relaxation, 3 s" + coarse, spacing(cells) + volume_late, std::abs(swelling(loose, 2, 3)));
+    t.control("no volume relaxation, 3 s" + coarse, spacing(cells) + volume_worst, most_swollen(loose));
   }
 }
 

@@ -24,7 +24,7 @@ class Loaded {
  public:
   Loaded(const Values& values, double load) : law_(values, g, height), weight_(values["density"] * g), load_(load) {}
   double strain(double Y) const { return law_.strain(weight_ * (height - Y) + load_); }
-  /// Where what lay at Y comes to lie: the integral of J, by the trapezium.
+  /// Returns the place of the matter from Y: the integral of J, by the trapezium.
   double pressed(double Y) const {
     constexpr int parts = 200;
     double y = 0;
@@ -90,8 +90,8 @@ double crest(const Swing& swing, double from, double to) {
 }
 
 void run(Trial& t) {
-  t.chose(
-      "The liquid has p = K (1 - J) (gamma: linear), may pull and is not anchored, as the reference says. The rigid "
+  t.note_choice(
+      "The liquid has p = K (1 - J) (gamma: linear), may pull and is not relaxed, as the reference says. The rigid "
       "mass is a stiff elastic box; 1.5 m/s^2 of gravity keep both together, and 30 % less of it starts the motion.");
   const Table exact = reference_table("piston_on_compressible_column.csv");
   Plot plot{

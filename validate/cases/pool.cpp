@@ -42,7 +42,7 @@ Left look(const World<float>& w, double start, double deep) {
   return left;
 }
 
-/// After each of these times [s], `cells` deep.
+/// Returns the states after each of these times [s], `cells` deep.
 std::vector<Left> leave(Trial& t, const std::vector<double>& times, std::vector<std::string> overrides = {},
                         double deep = depth) {
   if (deep != depth)
@@ -66,8 +66,8 @@ Curve profile(std::string name, const Left& left) {
 }
 
 void run(Trial& t) {
-  t.chose("As a scene gets it that asks for nothing more: jittered, and not pressed at the start.");
-  t.chose(
+  t.note_choice("As a scene gets it that asks for nothing more: jittered, and not pressed at the start.");
+  t.note_choice(
       "Rows of cells may be off by a twentieth, and one cell in a hundred may be hollow. When water at rest was "
       "shifted, and let go by whatever its surface reads, rows were off by 15 %, a tenth of the cells hollow and 13 % "
       "of the particles clumped after 30 s. And 6.5 cells deep they were off by 16 % after 60 s, as long as what the "

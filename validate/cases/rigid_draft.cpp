@@ -64,7 +64,7 @@ void judge(Trial& t, double density, double dx, Plot& drafts, Plot& speeds) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "A box of 20 x 12 x 20 cm in a basin of 36 x 36 cm with 16 cm of water; let go 1 cm above its draft. The water "
       "is "
       "damped by 5/s for 2 s, so that no waves are left; what moves behind is made by the solver. The water's level is "

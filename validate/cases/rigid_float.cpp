@@ -95,12 +95,12 @@ void judge(Trial& t, double dx, Plot& drafts, Plot& speeds) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "A box of 20 x 12 x 20 cm in a basin of 40 x 40 cm with 20 cm of water. For its draft it may only move up and "
       "down, is let go 1 cm above it, and the water is damped by 5/s for 2 s, so that no waves are left; its mean from "
       "3 to 4 s is judged. The water's level is that of a flat surface around the box, from the mean height of its "
       "particles.");
-  t.chose("For its rest the box is free, lies at its draft from the start, and nothing is damped.");
+  t.note_choice("For its rest the box is free, lies at its draft from the start, and nothing is damped.");
   Plot drafts{"rigid-float-projection",
               "Draft of rigid boxes by the projection (dashed: exact)",
               "time  [s]",

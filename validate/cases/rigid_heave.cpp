@@ -63,7 +63,7 @@ struct Marks {
   double trough = 0, crest = 0, at = 0;  ///< the lowest height between them, the highest behind, and when that is
   double period() const { return 2 * (zeros[1] - zeros[0]); }
 };
-/// Of the parabola through a sample and those beside it.
+/// Returns the time at the top of the parabola through a sample and those beside it.
 double time_of_top(const std::vector<double>& time, const std::vector<double>& height, std::size_t i) {
   if (i + 1 >= time.size()) return time[i];
   const double before = time[i] - time[i - 1], behind = time[i + 1] - time[i],
@@ -135,14 +135,14 @@ constexpr const char* let_go =
     "this tank: waves come back from its ends before the first crest.";
 
 void run(Trial& t) {
-  t.chose(fmt::format(let_go, "four"));
+  t.note_choice(fmt::format(let_go, "four"));
   judge(t, t.full() ? std::vector{6, 9} : std::vector{6}, false,
         {"rigid-heave", "Heave of a log of half the water's density", "time  [sqrt(a/g)]", "height / lift", {}});
 }
 
 void run_projection(Trial& t) {
-  t.chose(fmt::format(let_go, "eight"));
-  t.chose(
+  t.note_choice(fmt::format(let_go, "eight"));
+  t.note_choice(
       "The time to the first crest is a period too, which does not ask where the level is: half a millimeter more or "
       "less of that, 2 % of the lift, changes the time between passages by 3 %.");
   judge(t, t.full() ? std::vector{6, 9, 12} : std::vector{6, 9}, true,

@@ -1,4 +1,5 @@
-// What water gains a rigid body loses: momentum and angular momentum of a drop that hits a cube.
+// Momentum of water and rigid bodies: the momentum and angular momentum that a drop loses as it
+// hits a cube are the cube's.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +17,7 @@ struct Sums {
   double kinetic = 0;
 };
 
-/// Of the water and of all bodies.
+/// Returns the sums of the water and of all bodies.
 template <class R>
 Sums sums_of(const World<R>& world, const Balance& water) {
   Sums s{water.mass, water.momentum, water.angular, water.kinetic};
@@ -80,7 +81,7 @@ Hit judge(Trial& t, const std::string& who, double gate, double end, const std::
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The body is a cube: its inertia is that of a ball, so that free rotation is exact. In doubles the volume of the "
       "water is not relaxed: that shifts particles, which changes their angular momentum by some millionths, with or "
       "without a body.");

@@ -61,7 +61,7 @@ std::string error_at(int cells) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The friction of cube and floor is not known: 0.35 is taken, and what 0.2 and 0.6 do is reported by --full. The "
       "reservoir is 1.5 m long: by shallow-water theory the wave from its end is 1.6 m behind the gate when the cube "
       "is "

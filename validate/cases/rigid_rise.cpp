@@ -53,12 +53,12 @@ std::string part_of(double cells) {
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "A ball of {} kg/m^3 and {} m across in 0.4 x 0.4 m of still water; 0.1 m below it and 0.18 m above. Its way is "
       "that of its own mass and half of the water's, without drag and without walls, which is an upper bound: 0.85 to "
       "1.1 is right. The water keeps own velocities by asflip, with its memory.",
       ball, across));
-  t.chose(
+  t.note_choice(
       "Shorter steps are asked for by dt_max; the longest, where they are judged too, are those of water in which "
       "sound "
       "is a third as fast.");
@@ -99,7 +99,7 @@ void run(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "A ball of {} kg/m^3 and {} m across in 0.4 x 0.4 m of still water; 0.1 m below it and 0.18 m above; 8 cells "
       "across. Its way is that of its own mass and half of the water's, without drag and without walls. Frames bound "
       "the steps.",

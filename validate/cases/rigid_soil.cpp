@@ -50,7 +50,7 @@ Crater drop(Trial& t, double fall, int cells, const std::vector<std::string>& ov
 }
 
 void crater(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The ball starts at the surface with the speed of its fall. The depth is that of its lowest point under the "
       "surface before; H is the fall and the depth. The published factor is of loose beads, sand and seeds, and "
       "packing "
@@ -128,10 +128,10 @@ Snow thrown(Trial& t, const std::vector<std::string>& overrides = {}, double end
 }
 
 void snowball(Trial& t) {
-  // Of the packed preset; particles make the ball.
+  // The packed preset; particles make the ball.
   const double speed = 15, snow = 400 * 4.0 / 3 * std::numbers::pi * std::pow(0.08, 3), box = 200 * 0.12 * 0.24 * 0.24;
   const double along = speed * snow / (snow + box);
-  t.chose(
+  t.note_choice(
       "A ball that sticks to the box whole would give it m v/(m + M), one that bounces back without loss twice as "
       "much. "
       "Snow that flies past gives less: the gates are half of the first, and the second.");

@@ -12,8 +12,8 @@ namespace {
 constexpr double g = 9.81, radius = 0.03, tube = 0.09, liquid = 1400, ball = 19300, viscosity = 100;
 constexpr double from = 0.185, to = 0.15;  // m over the floor: where its speed is measured
 
-/// What the walls of a tube make of the drag of a sphere on its axis, of Stokes' 6 pi mu a U where
-/// the liquid sticks to it (Haberman & Sayre 1958; Happel & Brenner 1965, eq. 7-3.67).
+/// Returns the drag of a sphere on the axis of a tube over Stokes' 6 pi mu a U, where the liquid
+/// sticks to the walls (Haberman & Sayre 1958; Happel & Brenner 1965, eq. 7-3.67).
 double walls_of_tube(double part) {
   const double l3 = part * part * part, l5 = l3 * part * part;
   return (1 - 0.75857 * l5) / (1 - 2.1050 * part + 2.0865 * l3 - 1.7068 * l5 + 0.72603 * l5 * part);
@@ -62,7 +62,7 @@ Curve sinks(std::string name, double speed) {
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "The ball's diameter is a third of the tube's; the speed is that between {} and {} m over the floor, in 0.3 m of "
       "liquid. Re = {:.2g}.",
       from, to, 2 * radius * sticking() * liquid / viscosity));
@@ -96,7 +96,7 @@ void run(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "The ball's diameter is a third of the tube's; the speed is that between {} and {} m over the floor, in 0.3 m of "
       "liquid. Viscosity is implicit: a step a frame.",
       from, to));

@@ -1,5 +1,5 @@
-// Whether a floating box stays upright: the sign of its metacentric height, and the angle at which
-// it heels where that is negative.
+// Stability of a floating box: the sign of its metacentric height, and the angle at which it heels
+// where that is negative.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -49,7 +49,7 @@ FloaterSetUp beam_of(double width, double tilt) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Metacentric height: GM = KB + BM - KG, BM the second moment of the water plane over the volume displaced. A box "
       "of width b, height h and s times the water's density has GM/h = s/2 + (b/h)^2/(12 s) - 1/2. Where that is "
       "negative and its surface line cuts both sides, it heels to tan^2 = -2 GM/BM. Angles are means over the last "

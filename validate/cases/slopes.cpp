@@ -34,7 +34,7 @@ Slide slid(Trial& t, const std::string& wall, double degrees) {
   return s;
 }
 
-/// What `exact` says between 0 and its time.
+/// Returns the values of `exact` between 0 and its time.
 Curve parabola(std::string name, double distance) {
   Curve c{std::move(name), {}, {}, true};
   for (int k = 1; k <= 10; ++k) c.x.push_back(time * k / 10), c.y.push_back(distance * k * k / 100);
@@ -42,7 +42,7 @@ Curve parabola(std::string name, double distance) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Each run has a floor of its own, named in its row. Put down for 0.5 s under a damping of 40/s, then let go.");
   Plot plot{"slopes", "A block that slides under leaning gravity", "time  [s]", "distance  [m]", {}};
   const auto distance = [&](std::string name, const std::string& wall, double degrees, double want) {

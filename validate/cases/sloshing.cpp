@@ -18,7 +18,7 @@ constexpr double g = 9.81;
 /// is 0.3 %.
 constexpr double steepest = 0.15;
 
-/// Of one wave: what the rows of the reference have, unless said otherwise.
+/// A wave; defaults are the values that all rows of the reference share.
 struct Wave {
   double periods = 2.1;  ///< exact ones
   double crest = 0;      ///< cells; 0: one, or as high as the steepest may be
@@ -72,7 +72,7 @@ Curve exact_sine() {
 }
 
 void run_projection(Trial& t) {
-  t.chose("A crest of one cell; 64 cells of length. The shallow tank is 7 cells deep.");
+  t.note_choice("A crest of one cell; 64 cells of length. The shallow tank is 7 cells deep.");
   const Table exact = reference_table("linear_sloshing_periods.csv");
   Plot plot{"sloshing-projection",
             "Sloshing modes of tanks, by the projection",
@@ -101,11 +101,12 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "A crest of one cell, but at most as high as k a = 0.15, as the reference is the theory of waves without height: "
       "the period of a wave one cell high is 1.1 % longer in a third mode (Rayleigh 1915), and so measured it is 3.3 % "
       "off, which would miss its gate (reported below with --full). k a <= 0.15 was chosen with commit c4adf5d.");
-  t.chose("32 cells of length and more, 64 in the shallow tank; potential flow at the start, on hydrostatic pressure.");
+  t.note_choice(
+      "32 cells of length and more, 64 in the shallow tank; potential flow at the start, on hydrostatic pressure.");
   const Table exact = reference_table("linear_sloshing_periods.csv");
   Plot plot{"sloshing", "Sloshing modes of tanks", "time / exact period", "amplitude of the mode / crest", {}};
   for (std::size_t row = 0; row < exact.size(); ++row) {

@@ -11,8 +11,8 @@ namespace dreampm::validate::cases {
 namespace snow_press_case {
 namespace {
 
-/// By stretch, falling: the mean Jp, the distance of the farthest particle's Jp from it, and the
-/// hardening.
+/// The packing by stretch, falling: the mean Jp, the distance of the farthest particle's Jp from
+/// it, and the hardening.
 struct Packing {
   std::vector<double> pressed, jp, spread, hardening;  ///< pressed: 1 - stretch
 };

@@ -42,7 +42,7 @@ double lost(const Splash& s, const Splash& other) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "A cube of 16 cm falls by 10 cm into a pool of 48 x 48 x 12 cm. Energy is that of motion and height over water "
       "at rest. The gate is a tenth of the energy at the start, at the worst frame (50 a second) of 0.8 s. Speeds of "
       "the projection lag half a step, which "

@@ -1,4 +1,5 @@
-// What has fallen and come to rest fills its own volume again: slabs, layers, rain on a pool, mud.
+// Volume after a splash: matter that has come to rest fills its own volume again: slabs, layers,
+// rain on a pool, mud.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -16,7 +17,7 @@ namespace {
 constexpr double g = 9.81;
 constexpr double settled = 2;  ///< s after the impact, when a volume is judged
 
-/// What falls: a slab from wall to wall, or a pool that drops fall into.
+/// The falling matter: a slab from wall to wall, or a pool into which drops fall.
 struct Fall {
   std::string name;
   double bottom, depth;  ///< m, of the slab or the pool
@@ -116,7 +117,7 @@ void still_pool(Trial& t) {
 }
 
 void run_projection(Trial& t) {
-  t.chose("The volume follows from the particles' places, 2 s after the impact, as in splash-volume.");
+  t.note_choice("The volume follows from the particles' places, 2 s after the impact, as in splash-volume.");
   std::vector<Fall> falls{{"slab of 2 cells from 0.2 m", 0.2, 0.04},
                           {"layer of 4 cells from 0.5 m", 0.5, 0.08},
                           {"layer of 8 cells from 0.5 m", 0.5, 0.16}};
@@ -149,16 +150,16 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The volume follows from the particles' places: in each column of 2 x 2 cells twice their mean height over the "
       "floor. The ledger's `volume`, a sum of V0 J, does not see it: water that swells in a splash and forgets its "
       "gaps has J near 1 in all of its particles, and presses as if at rest. So it stayed at 1.5 of its volume when "
       "what a surface reads was not believed, however thin the layer.");
-  t.chose(
+  t.note_choice(
       "The gate is 3 % at 2 s after the impact: a hundredth of it is compression, and the depth of a layer of 2 cells "
       "is known to a few hundredths of a cell. A fall of 0.5 m has thrown the layer apart to several times its volume "
       "half a second after the impact: it has 1 s to come down and as long to be at rest.");
-  t.chose(
+  t.note_choice(
       "The rain is 20 drops of 2 cells, places and speeds drawn from the library's own random numbers with seed 1. Its "
       "impact is that of the last drop.");
   std::vector<Fall> falls{{"slab of 2 cells from 0.2 m", 0.2, 0.04}, {"layer of 4 cells from 0.5 m", 0.5, 0.08}};
@@ -185,7 +186,7 @@ void run(Trial& t) {
             t, fall, {"materials.water.transfer=" + transfer, "materials.water.max_compression=" + compression});
         const std::string metric = what + ": volume off by";
         t.at_most(metric, c.off(), 0.03, "%");
-        t.control("no anchoring", metric, (fall.drops ? loose_rain : loose).off());
+        t.control("no volume relaxation", metric, (fall.drops ? loose_rain : loose).off());
         if (compression == stiff.front()) plot.curves.push_back(curve_of(c, fall.name + ", " + transfer));
       }
   if (t.full()) {
@@ -196,12 +197,12 @@ void run(Trial& t) {
       const Course c = let_fall(t, fall, {mud});
       const std::string metric = "mud, " + fall.name + ": volume off by";
       t.at_most(metric, c.off(), 0.03, "%");
-      t.control("no anchoring", metric, loose_mud.off());
+      t.control("no volume relaxation", metric, loose_mud.off());
       plot.curves.push_back(curve_of(c, "mud, " + fall.name));
     }
     still_pool(t);
   }
-  plot.curves.push_back(curve_of(loose, "control: no anchoring"));
+  plot.curves.push_back(curve_of(loose, "control: no volume relaxation"));
   plot.curves.push_back(level("its own volume", 0, settled, 1));
   t.plot(std::move(plot));
 }

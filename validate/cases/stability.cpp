@@ -5,8 +5,8 @@
 #include <mutex>
 
 #include "dreampm/base/parallel.h"
-#include "validate/draw.h"
 #include "validate/measure/particles.h"
+#include "validate/random_scene.h"
 #include "validate/validation_run.h"
 
 namespace dreampm::validate::cases {
@@ -21,14 +21,14 @@ struct Outcome {
   double shortest = 0;  ///< step over its floor
   double kinetic = 0;   ///< largest kinetic energy over that of the fall
   double energy = 0;    ///< the same over that of the fall and of what gave energy
-  double given = 0;     ///< by anchoring: energy over it
+  double given = 0;     ///< by volume relaxation: energy over it
   double hardened = 0;  ///< by hardening
   double carried = 0;   ///< by the transfer, at most
   std::string scene;
   std::uint64_t particle_steps = 0;
 };
 
-/// What is wrong with the world, which began with `particles` particles; empty if nothing.
+/// Returns the fault of the world, which began with `particles` particles; empty if there is none.
 std::string fault_of(const World<float>& w, std::size_t particles) {
   if (w.particles() + w.left != particles)
     return fmt::format("{} particles are in the scene and {} left it, of {}", w.particles(), w.left, particles);
@@ -53,7 +53,7 @@ std::string fault_of(const World<float>& w, std::size_t particles) {
   return {};
 }
 
-Outcome run_draw(const Options& options, const Draw& draw) {
+Outcome run_scene(const Options& options, const RandomScene& draw) {
   Outcome o;
   o.scene = draw.text;
   o.shortest = 1e30;
@@ -65,11 +65,11 @@ Outcome run_draw(const Options& options, const Draw& draw) {
     double mass = 0;
     for (const auto& set : run.world.sets) mass += set.mass * static_cast<double>(set.size());
     const double start = mass, energy = mass * draw.fall * draw.fall / 2;
-    // What laws gave so far: by anchoring, and where hardening makes the same strain store more;
-    // and transfers, in sum.
+    // Energy from laws so far: from volume relaxation, and from hardening, which makes the same
+    // strain store more; and from transfers, in sum.
     double relaxed = 0, hardened = 0, transferred = 0;
     Motion<float> motion;
-    for (int n = 1; n <= draw_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
+    for (int n = 1; n <= random_scene_steps && o.fault.empty() && run.world.particles() > 0; ++n) {
       const StepSums r = run.step(&motion, 0);
       const Balance b = balance(run.world, motion);
       relaxed -= std::min(0.0, r.pass.energy.relaxed), hardened -= std::min(0.0, r.pass.energy.plastic);
@@ -99,31 +99,33 @@ Outcome run_draw(const Options& options, const Draw& draw) {
 }
 
 /// Draws side by side, each on one thread; the outcomes in the draws' order.
-std::vector<Outcome> run_draws(const Options& options, const std::vector<Draw>& draws) {
+std::vector<Outcome> run_scenes(const Options& options, const std::vector<RandomScene>& draws) {
   std::vector<Outcome> all(draws.size());
-  parallel_for(draws.size(), 1, [&](std::size_t i) { on_this_thread([&] { all[i] = run_draw(options, draws[i]); }); });
+  parallel_for(draws.size(), 1, [&](std::size_t i) { on_this_thread([&] { all[i] = run_scene(options, draws[i]); }); });
   return all;
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Two bodies fall on a floor and on each other: any materials with parameters anywhere in their ranges (but for "
       "seed's legacy, the report's own program, whose hardening has no bound), any transfer, 1 to 64 particles a cell "
-      "in any pattern, any walls, one in ten of them open, any cfl that the parser takes (validate/draw.h). Nothing "
+      "in any pattern, any walls, one in ten of them open, any cfl that the parser takes (validate/random_scene.h). "
+      "Nothing "
       "lost: what is in the scene and what left it are what began.");
-  t.chose(
-      "Energy: known sources are the anchoring of liquids, which draws J to a density that 1 to 64 random particles a "
-      "cell read badly (an earlier version once gave a draw 899 times the energy of its fall in one anchoring), "
+  t.note_choice(
+      "Energy: known sources are the volume relaxation of liquids, which brings J to a density that 1 to 64 random "
+      "particles a "
+      "cell read badly (an earlier version once gave a draw 899 times the energy of its fall in one relaxation), "
       "hardening that makes the same strain store more (snow, seed), and asflip, whose affine part can grow beyond the "
       "velocities that it is taken from (docs/theory/step.md, Transfers: --seed 2004 --draw 126).");
   const Options& o = t.options();
   const int count = o.draws > 0 ? o.draws : t.full() ? 200 : 12;
-  std::vector<Draw> draws;
+  std::vector<RandomScene> draws;
   if (o.draw >= 0)
-    draws.push_back(draw_scene(o.seed, o.draw, o.cfl));
+    draws.push_back(random_scene(o.seed, o.draw, o.cfl));
   else
-    for (int i = 0; i < count; ++i) draws.push_back(draw_scene(o.seed, i, o.cfl));
-  const auto outcomes = run_draws(o, draws);
+    for (int i = 0; i < count; ++i) draws.push_back(random_scene(o.seed, i, o.cfl));
+  const auto outcomes = run_scenes(o, draws);
   const std::string at_cfl = o.cfl > 0 ? fmt::format(" at cfl {}", o.cfl) : "";
   int failed = 0;
   double shortest = 1e30, kinetic = 0, energy = 0, given = 0, hardened = 0, carried = 0;
@@ -145,7 +147,7 @@ void run(Trial& t) {
   t.at_most(name, failed, 0);
   t.report("shortest step over its floor", shortest);
   t.report("largest kinetic energy over that of the fall", kinetic);
-  t.report("largest energy that anchoring gave, over that of the fall", given);
+  t.report("largest energy that volume relaxation gave, over that of the fall", given);
   t.report("largest energy that hardening gave, over that of the fall", hardened);
   t.report("largest energy that transfers gave, over that of the fall", carried);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
@@ -167,44 +169,45 @@ void run(Trial& t) {
              level("gate", 1, last, most_energy)}});
   }
   // The bound of the step is there for a reason: some of a few scenes must break with six times it.
-  std::vector<Draw> wrong;
+  std::vector<RandomScene> wrong;
   for (int i = 0; i < 4; ++i) {
-    wrong.push_back(draw_scene(1, i));
+    wrong.push_back(random_scene(1, i));
     wrong.back().scene.time.cfl = 3;
   }
-  const auto noticed = run_draws(o, wrong);
+  const auto noticed = run_scenes(o, wrong);
   t.control("steps of 3 cells", name,
             static_cast<double>(
                 std::count_if(noticed.begin(), noticed.end(), [](const Outcome& r) { return !r.fault.empty(); })));
-  std::vector<Draw> thrown;
+  std::vector<RandomScene> thrown;
   for (int i = 0; i < 4; ++i) {
-    thrown.push_back(draw_scene(1, i));
+    thrown.push_back(random_scene(1, i));
     for (model::Body& body : thrown.back().scene.bodies) body.velocity = body.velocity * 2;
   }
   double loudest = 0;
-  for (const Outcome& r : run_draws(o, thrown)) loudest = std::max(loudest, r.energy);
+  for (const Outcome& r : run_scenes(o, thrown)) loudest = std::max(loudest, r.energy);
   t.control("bodies thrown at twice their speed", sources, loudest);
 }
 
 void run_playground(Trial& t) {
-  t.chose(
+  t.note_choice(
       "The report's two presets with its sliders by chance: v 0 to 0.7, lower -400 to -100, upper 0 to 100, elastic on "
       "or off, h 0.25 to 4, gravity -10 to 10 m/s^2 along each axis; its grids of 32 and, one in eight, of 64 "
-      "(validate/draw.h). Its slider Time Step says how much time passes in a drawn frame, and not the step: that "
+      "(validate/random_scene.h). Its slider Time Step says how much time passes in a drawn frame, and not the step: "
+      "that "
       "follows from the state.");
   const Options& o = t.options();
   constexpr int all = 300;
   const int count = o.draws > 0 ? o.draws : t.full() ? all : 24;
-  std::vector<Draw> draws;
+  std::vector<RandomScene> draws;
   if (o.draw >= 0)
-    draws.push_back(draw_report(o.seed, o.draw));
+    draws.push_back(random_report_scene(o.seed, o.draw));
   else
-    for (int i = 0; i < count; ++i) draws.push_back(draw_report(o.seed, i));
+    for (int i = 0; i < count; ++i) draws.push_back(random_report_scene(o.seed, i));
   if (o.cfl > 0)
-    for (Draw& draw : draws) draw.scene.time.cfl = o.cfl;
+    for (RandomScene& draw : draws) draw.scene.time.cfl = o.cfl;
   int failed = 0;
   double kinetic = 0, energy = 0, hardened = 0, shortest = 1e30;
-  const std::vector<Outcome> outcomes = run_draws(o, draws);
+  const std::vector<Outcome> outcomes = run_scenes(o, draws);
   for (std::size_t i = 0; i < draws.size(); ++i) {
     const Outcome& r = outcomes[i];
     t.cost(r.particle_steps);
@@ -221,14 +224,14 @@ void run_playground(Trial& t) {
   t.report("largest energy that hardening gave, over that of the fall", hardened);
   const std::string sources = "largest kinetic energy over that of the fall and of known sources";
   t.at_most(sources, energy, most_energy);
-  // What is wrong is seen.
-  std::vector<Draw> wrong, thrown;
+  // Controls: each fault is found.
+  std::vector<RandomScene> wrong, thrown;
   for (int i = 0; i < 4; ++i) {
-    wrong.push_back(draw_report(1, i)), thrown.push_back(draw_report(1, i));
+    wrong.push_back(random_report_scene(1, i)), thrown.push_back(random_report_scene(1, i));
     wrong.back().scene.time.cfl = 3;
     for (model::Body& body : thrown.back().scene.bodies) body.velocity = {0, -1.5 * thrown.back().fall, 0};
   }
-  const auto noticed = run_draws(o, wrong), loud = run_draws(o, thrown);
+  const auto noticed = run_scenes(o, wrong), loud = run_scenes(o, thrown);
   t.control("steps of 3 cells", name,
             static_cast<double>(
                 std::count_if(noticed.begin(), noticed.end(), [](const Outcome& r) { return !r.fault.empty(); })));

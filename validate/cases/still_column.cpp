@@ -26,7 +26,8 @@ Curve curve(std::string name, const RowErrors& rows) {
 }
 
 void run(Trial& t) {
-  t.chose("Pressed to its hydrostatic state at the start, then watched; each row against the depths of its particles.");
+  t.note_choice(
+      "Pressed to its hydrostatic state at the start, then watched; each row against the depths of its particles.");
   const RowErrors usual = errors(t, {}, 0.3, 0.6);
   const auto bare_under = [&](const char* gravity) {
     return errors(

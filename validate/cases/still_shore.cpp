@@ -17,8 +17,8 @@ struct Left {
   std::vector<double> time, risen;  ///< s; of its center's height, in thousandths
 };
 
-/// What is left of the water after `time` [s]. `shapes`: of the colliders, of this run if there are
-/// none yet.
+/// Returns the rest of the water after `time` [s]. `shapes`: of the colliders, of this run if there
+/// are none yet.
 Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vector<std::string>& overrides) {
   ValidationRun<float> run(t, "still-shore", overrides);
   if (shapes.empty()) shapes = run.world.colliders;
@@ -45,8 +45,9 @@ Left leave(Trial& t, double time, std::vector<Collider>& shapes, const std::vect
 }
 
 void run(Trial& t) {
-  t.chose("No surface lies along the grid: a bank of 28 degrees, a pillar turned by 30 degrees, a ball of 2 cells.");
-  t.chose(
+  t.note_choice(
+      "No surface lies along the grid: a bank of 28 degrees, a pillar turned by 30 degrees, a ball of 2 cells.");
+  t.note_choice(
       "When contact stopped nodes inside of colliders instead, water over such a bank moved at 118 mm/s after 3 s, and "
       "particles lay up to 1.2 cells inside.");
   std::vector<Collider> shapes;

@@ -90,8 +90,8 @@ Calm calm(Trial& t, const Vec3i& cells, int depth, double time, double ball,
 }
 
 void run_projection(Trial& t) {
-  t.chose("Pressure is that of the cells. The last 2 s of 20 are judged.");
-  t.chose(
+  t.note_choice("Pressure is that of the cells. The last 2 s of 20 are judged.");
+  t.note_choice(
       "The ball is 10.6 cells across, off the nodes, and is watched for 5 s; its buoyancy is what the pressure gives "
       "to "
       "the parts of faces that it closes.");
@@ -127,7 +127,7 @@ void run_projection(Trial& t) {
 }
 
 void run(Trial& t) {
-  t.chose("Sound is 10 sqrt(2 g H). Pressed to its hydrostatic state at the start; its last 2 s are judged.");
+  t.note_choice("Sound is 10 sqrt(2 g H). Pressed to its hydrostatic state at the start; its last 2 s are judged.");
   const Still s = stand(t, 60);
   const char* const depth = "depth after 60 s, change";
   t.at_most(depth, std::abs(s.depth), 0.003, "%");

@@ -33,7 +33,7 @@ std::vector<VortexDecay> decays_of(Trial& t, const Study& s, int cells, Plot& pl
   return draws;
 }
 
-/// Of viscosity, over the kinetic energy lost, minus 1.
+/// Returns the heat of viscosity over the kinetic energy lost, minus 1.
 double heat_error(const std::vector<VortexDecay>& draws) {
   return std::abs(mean_of(draws, [](const VortexDecay& v) { return v.heat - 1; }).mean);
 }
@@ -46,7 +46,7 @@ double loss_of_flip(double blend, int cells, double pace) {
   return 2 * (1 - blend) * (1 - std::pow(left, 4)) * pace;
 }
 
-/// Over the rate that viscosity and the transfer should have together, minus 1.
+/// Returns the rate over that which viscosity and the transfer should have together, minus 1.
 double error_of_flip(const std::vector<VortexDecay>& draws, double blend, int cells) {
   const auto rate = [&](const VortexDecay& v) {
     return v.rate * v.exact_rate / (v.exact_rate - loss_of_flip(blend, cells, v.pace));
@@ -69,14 +69,14 @@ void judge_flip(Trial& t, double nu, int cells, const std::string& heat) {
 }
 
 void run(Trial& t) {
-  t.chose(fmt::format(
+  t.note_choice(fmt::format(
       "Poisson-disk points: a lattice is drawn out into lines by the first turn. Filled 1 % over rest density, or the "
       "liquid, which cannot pull, would cavitate in the core. Speeds of 1 m/s, Mach 0.05; a slab 4 cells thick. One "
       "draw of the points differs from the next by 0.1 to 0.3 % of the rate at Re = 10, as much as the error of the "
       "finest grid: all but the controls of viscosity and damping are means over {} draws, and errors count in an "
       "order at least with their standard error. The plot has the first draw.",
       vortex_draws));
-  t.chose(
+  t.note_choice(
       "Flip's blend of 0.99 takes a hundredth from PIC, whose smoothing is known: sinc^3 of half a cell's phase along "
       "each axis, to the grid and back. At Re = 100 and 32 cells that is 39 % of the exact rate, and counted.");
   // APIC smooths what is short on the grid, by 0.14 (k dx)^2 c dx: at a small viscosity it takes

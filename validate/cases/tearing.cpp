@@ -72,10 +72,10 @@ Splash splash(Trial& t, const std::vector<std::string>& overrides = {}) {
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Particles on both sides of the plane of tearing share nodes within 1.5 cells of it. If these layers lost all of "
       "their speed, halves of 16 cells would keep 1 - 1.5/16: that is the gate. Water here has no surface tension.");
-  t.chose(
+  t.note_choice(
       "The cube's parts have 8 cells an edge, and so may lag by 1.5/8 of their way along every axis. A fragment is "
       "what hangs together by distances below a cell and has an eighth of a part's matter: a core of 4 cells an edge, "
       "one more than a particle's spline spans.");

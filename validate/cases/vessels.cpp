@@ -135,15 +135,15 @@ struct Left {
   std::vector<double> time, course;  ///< s; cm^3 lost
 };
 
-/// What is in the vessel is left alone for `time` [s]. Lost is what lies beyond the wall, and what
-/// has gone into it by more than half a cell.
+/// Leaves the matter in the vessel alone for `time` [s]. Lost is matter beyond the wall, or more
+/// than half a cell within it.
 Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> overrides) {
   overrides.insert(overrides.end(), v.overrides.begin(), v.overrides.end());
   model::Scene scene = built_in_scene("vessels", overrides);
   if (v.mesh) scene.colliders.clear();
   ValidationRun<float> run(t, scene);
   if (v.mesh) {
-    // As scenes sample colliders that are meshes.
+    // The mesh as scenes sample colliders that are meshes.
     const Model wall = model_of(*v.mesh);
     const double spacing = scene.space.spacing, voxel = voxel_of_wall(thickness_of(wall), spacing);
     run.world.colliders.push_back({"wall", mesh_region(wall, 1, voxel, v.name, 3 * spacing), WallType::separate});
@@ -166,15 +166,15 @@ Left leave(Trial& t, const Vessel& v, double time, std::vector<std::string> over
 }
 
 void run(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Everyone draws boxes that end at walls and on each other: there is no edge where they meet, and nothing may "
       "pass. "
       "The tank is a shelf and three upright boxes between the sides of the scene's box. The cup is a cylinder minus a "
       "cylinder; bowl and funnel are meshes that are turned on a lathe, of 64 steps.");
-  t.chose(
+  t.note_choice(
       "Lost is what lies beyond the outer face of a wall, and what has gone into it by more than half a cell. The gate "
       "is 0: a vessel that loses a drop a minute is empty in an hour.");
-  t.chose(
+  t.note_choice(
       "What is round stands where no axis and no face lies on a node or the face of a cell. The holes of a control are "
       "a cell wide; for sand, which bridges that, three.");
   struct Matter {

@@ -32,13 +32,13 @@ Shaken shake(Trial& t, const Vec3i& cells, int depth, double time, const std::ve
 }
 
 void tell_set_up(Trial& t) {
-  t.chose(
+  t.note_choice(
       "Jittered, not on a lattice: its rows would stay in step with the grid until the first blows. Sound is 10 v_ref, "
       "v_ref = sqrt(2 g (0.6 L + H)) being the largest speed that shaking at 0.6 g can give in a tank of length L. "
       "Chosen with commit c4adf5d; before, it was a lattice and v_ref = sqrt(2 g H), 1.8 instead of 3.8 m/s in the "
       "shallow tank, whose blows at 4 m/s then compressed the liquid: its lowest and its highest density missed their "
       "gates.");
-  t.chose("Pressed to its hydrostatic state at the start; the depth is held against that start.");
+  t.note_choice("Pressed to its hydrostatic state at the start; the depth is compared with that start.");
 }
 
 const char* const depth = "depth at rest after 50 s, change";
@@ -60,11 +60,11 @@ void violent(Trial& t) {
   const char* const clumps = "particles with a neighbor nearer than 1/4 spacing";
   t.at_most(clumps, s.clumps, 0.13, "%");
   // Points placed by chance: 1 - exp(-(4/3) pi/4^3) = 6.3 %.
-  t.control("water that pulls, anchored ten times as strongly, 24 x 10 cells, 10 s", clumps,
+  t.control("water that pulls, relaxed ten times as strongly, 24 x 10 cells, 10 s", clumps,
             shake(t, {24, 24, 4}, 10, 10, {"materials.water.tension=true", "materials.water.relaxation=10"}).clumps);
   // The control needs no 50 s: without volume relaxation it swells from the start. LIQUID wants
   // more than 8 %.
-  t.control("plain J: no anchoring, no clamp, 10 s", depth,
+  t.control("plain J: no volume relaxation, no clamp, 10 s", depth,
             std::abs(shake(t, cells, 20, 10, {"materials.water.relaxation=0", "materials.water.tension=true"}).depth),
             0.08);
   t.plot({"violent-tank",
@@ -84,7 +84,7 @@ void shallow(Trial& t) {
   t.at_least("lowest density inside, in motion", s.lowest(), 0.95);
   t.at_most("highest density inside, in motion", s.highest(), 1.03);
   const Shaken loose = shake(t, cells, 8, 10, {"materials.water.relaxation=0"});
-  const char* const what = "no anchoring, 10 s";
+  const char* const what = "no volume relaxation, 10 s";
   t.control(what, depth, std::abs(loose.depth), 0.3);  // as LIQUID wants
   t.control(what, "lowest density inside, in motion", loose.lowest());
   t.control(what, "highest density inside, in motion", loose.highest());

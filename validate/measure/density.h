@@ -39,9 +39,9 @@ double interior_density(const World<R>& w, std::size_t set = 0) {
   return cells ? sum / cells : 0;
 }
 
-/// What rows of nodes hold, over what full ones do: those of height `first` to `last` over the
-/// floor, each over the whole width of the domain. As the grid sees it: sheets of particles that
-/// cross from box to box change nothing.
+/// Returns the content of rows of nodes over that of full ones: the rows of height `first` to
+/// `last` over the floor, each over the whole width of the domain. It is read off the grid: sheets
+/// of particles that cross from box to box change nothing.
 template <class R>
 std::vector<double> node_rows(const World<R>& w, int first, int last) {
   std::vector<double> rows(static_cast<std::size_t>(last - first + 1), 0);

@@ -19,7 +19,7 @@ inline double slope_of(const std::vector<double>& x, const std::vector<double>& 
   return xy / xx;
 }
 
-/// Of draws: their mean, and its standard error; 0 without chance.
+/// The mean over draws, and its standard error; 0 without chance.
 struct Mean {
   double mean = 0, uncertainty = 0;
 
@@ -27,7 +27,7 @@ struct Mean {
   double known() const { return std::copysign(std::max(std::abs(mean), uncertainty), mean); }
 };
 
-/// At least one draw; of one alone nothing is known of the chance in it.
+/// Returns the mean of at least one draw; of one alone nothing is known of the chance in it.
 inline Mean mean_of(const std::vector<double>& draws) {
   if (draws.empty()) throw std::invalid_argument("no draws have no mean");
   const double n = static_cast<double>(draws.size());
@@ -71,7 +71,7 @@ class Swing {
     before_ = q, time_before_ = time;
     times.push_back(time), values.push_back(q);
   }
-  /// From the first zero to the last. At least two zeros.
+  /// Returns the period from the first zero to the last. At least two zeros.
   double period() const {
     if (zeros_.size() < 2) throw RunError("it does not swing: fewer than two zeros, so no period");
     return 2 * (zeros_.back() - zeros_.front()) / static_cast<double>(zeros_.size() - 1);

@@ -13,7 +13,7 @@ namespace dreampm::validate {
 /// middle: so the moments at which slabs first hold that much, with their middles, are its motion.
 class Front {
  public:
-  /// Of the liquid set 0, whose front begins at `x` [m].
+  /// Makes the front of the liquid set 0, which begins at `x` [m].
   explicit Front(double x) : times{0}, places{x} {}
 
   template <class R>
@@ -39,10 +39,10 @@ class Front {
   double time_ = 0;
 };
 
-/// How high [m] over the floor the liquid of set 0 stands over the cells [from, to) of x: the mean
-/// over those cells and all of z of the highest particle's height and half the spacing above it.
-/// Counts of particles would step, as a slow flow moves them out of a cell row by row. Cells that
-/// hold nothing count as 0.
+/// Returns the height [m] over the floor of the liquid of set 0 over the cells [from, to) of x: the
+/// mean over those cells and all of z of the highest particle's height and half the spacing above
+/// it. Counts of particles would step, as a slow flow moves them out of a cell row by row. Empty
+/// cells count as 0.
 template <class R>
 double surface_height(const World<R>& w, int from, int to) {
   const int depth = w.high.z - w.low.z;

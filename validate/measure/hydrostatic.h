@@ -37,7 +37,7 @@ class Hydrostatic {
     }
     return (low + high) / 2;
   }
-  /// Where what lay at rest height Y lies under its load.
+  /// Returns the place under load of the matter from rest height Y.
   double pressed(double Y) const {
     const double at = std::clamp(Y / height_, 0.0, 1.0) * parts;
     const int i = std::min(static_cast<int>(at), parts - 1);

@@ -24,8 +24,8 @@ inline void set_motion(ParticleSeed& n, const Field& velocity, double h) {
   }
 }
 
-/// How much of a mode is in the displacements since the start: sum (x - X).U(X) / sum U.U. Seeds in
-/// the order of ids from 0.
+/// Returns the amplitude of a mode in the displacements since the start: sum (x - X).U(X) / sum
+/// U.U. Seeds in the order of ids from 0.
 template <class R>
 double mode_amplitude(const World<R>& w, const std::vector<ParticleSeed>& seeds, const Field& mode) {
   const auto x = positions_by_id(w);
@@ -37,8 +37,8 @@ double mode_amplitude(const World<R>& w, const std::vector<ParticleSeed>& seeds,
   return part / norm;
 }
 
-/// How far [m] the worst particle is after `steps` steps with the fixed dt from symplectic Euler's
-/// fall under gravity g: x_0 + n dt v_0 + n (n + 1)/2 dt^2 g.
+/// Returns the distance [m] of the worst particle after `steps` steps with the fixed dt from
+/// symplectic Euler's fall under gravity g: x_0 + n dt v_0 + n (n + 1)/2 dt^2 g.
 template <class R>
 double fallen_astray(const World<R>& w, const std::vector<ParticleSeed>& seeds, int steps, const Vec3d& g) {
   const double dt = w.settings.fixed_dt;
@@ -57,10 +57,10 @@ double fall_error(World<R>& w, const std::vector<ParticleSeed>& seeds, int steps
   return fallen_astray(w, seeds, steps, g);
 }
 
-/// How far [m] matter on the floor goes along +x in `time` when gravity leans by `degrees` towards
-/// it. It is put down for as long first, damped: gravity that acts all at once makes a body
-/// tremble, and friction under a wall that cannot be left sees only the pressing half. Frames must
-/// end at multiples of `time`.
+/// Returns the distance [m] that matter on the floor slides along +x in `time` when gravity leans
+/// by `degrees` towards it. The matter lies for as long first, damped: gravity that acts all at
+/// once makes a body tremble, and friction under a wall that cannot be left sees only the pressing
+/// half. Frames must end at multiples of `time`.
 template <class R, class Step>
 double slide(World<R>& w, double degrees, double time, const Step& step) {
   const double a = degrees * std::numbers::pi / 180, g = length(w.gravity);

@@ -34,8 +34,8 @@ void each_pair_within(const std::vector<Vec3d>& x, double distance, const Body& 
   }
 }
 
-/// How many points each piece has, the largest first: two points nearer than `distance` [m] are of
-/// one piece.
+/// Returns the numbers of points of the pieces, the largest first: two points nearer than
+/// `distance` [m] are of one piece.
 inline std::vector<std::size_t> pieces(const std::vector<Vec3d>& x, double distance) {
   std::vector<std::size_t> next(x.size());  // towards the piece's first point
   std::iota(next.begin(), next.end(), std::size_t{0});

@@ -1,4 +1,4 @@
-// What a world's particles say: positions, sums over slabs.
+// Sums over a world's particles: positions, slabs.
 #pragma once
 #include <algorithm>
 #include <vector>
@@ -36,7 +36,7 @@ Vec3d mean_position(const World<R>& w) {
   return sum * (1.0 / static_cast<double>(w.particles()));
 }
 
-/// How much matter [m^3 of rest volume] lies in each one-cell slab along `axis`, from the low wall
+/// Returns the matter [m^3 of rest volume] in each one-cell slab along `axis`, from the low wall
 /// on.
 template <class R>
 std::vector<double> slab_volumes(const World<R>& w, int axis, std::size_t set = 0) {

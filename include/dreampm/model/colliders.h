@@ -1,4 +1,4 @@
-// What matter meets: colliders at rest, in a given motion, and rigid bodies.
+// Colliders, which matter meets: at rest, in a given motion, and rigid bodies.
 #pragma once
 #include <array>
 #include <optional>
@@ -21,7 +21,7 @@ struct Spring {
 
 namespace model {
 
-/// What makes a collider a rigid body.
+/// The settings that make a collider a rigid body.
 struct Rigid {
   std::optional<double> density{};  ///< kg/m^3, 0.1 to 30000; or
   std::optional<double> mass{};     ///< kg, above 0
@@ -50,9 +50,9 @@ struct Collider {
   double friction = 0;
   double sticky = 0;                  ///< Pa: the tension that it holds matter with; of type separate
   std::optional<double> voxel{};      ///< m: of the distances from meshes; absent: the spacing, finer for thin walls
-  bool deletes = false;               ///< whether matter that touches it is taken out
+  bool deletes = false;               ///< true if matter that touches it is taken out
   std::optional<double> thickness{};  ///< m: the shell about the surface of its shape, half of it on either side
-  bool holds = false;                 ///< whether matter that starts inside is held there, and moves with it
+  bool holds = false;                 ///< true if matter that starts inside is held there, and moves with it
   std::optional<Motion> motion{};     ///< absent: it stands
   std::optional<Rigid> rigid{};       ///< matter and impacts move it
   bool pin = false;                   ///< it only holds matter, and is not drawn

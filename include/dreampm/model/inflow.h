@@ -1,4 +1,4 @@
-// Where matter comes in and goes out.
+// Emitters and sinks, through which matter comes in and goes out.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace dreampm::model {
 
-/// Where matter comes in: the shape stays filled with what moves through it.
+/// An emitter: its shape stays filled with matter that moves through it.
 struct Emitter {
   /// Particles of two sites of a lattice keep half a spacing.
   static constexpr double most_jitter = 0.25;
@@ -27,11 +27,11 @@ struct Emitter {
   double start = 0;                 ///< s
   std::optional<double> stop{};     ///< s; absent: never
   std::int64_t pool = 0;            ///< particles that it may give, at least 1
-  bool recycle = false;             ///< whether the pool is what may be there at once, not in all
+  bool recycle = false;             ///< true if the pool is what may be there at once, not in all
   std::optional<Motion> motion{};   ///< of its shape; velocities are those in the shape
 };
 
-/// Where matter is taken out.
+/// A sink: it takes out matter that comes into its shape.
 struct Sink {
   std::string name;
   Shape shape{};

@@ -1,4 +1,4 @@
-// What matter is made of, and what there is of it at the start.
+// Materials, and the bodies of matter that there are at the start.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -32,7 +32,7 @@ class Values {
   void erase(std::string_view key) {
     if (const auto it = values_.find(key); it != values_.end()) values_.erase(it);
   }
-  /// Whether there is a value that is a number.
+  /// True if the key has a value, and that is a number.
   bool has(std::string_view key) const {
     const auto it = values_.find(key);
     return it != values_.end() && !std::isnan(it->second);
@@ -51,7 +51,7 @@ class Values {
   std::map<std::string, double, std::less<>> values_;
 };
 
-/// How a body is filled with particles.
+/// The pattern in which particles fill a body.
 enum class Pattern {
   jitter,   ///< the centers of cubic cells, each moved by up to a quarter of the spacing along every axis
   lattice,  ///< the centers of cubic cells
@@ -60,12 +60,12 @@ enum class Pattern {
 
 namespace model {
 
-/// What matter is made of: a type of `dreampm materials` with values of its parameters. False and
-/// true, and other words, are numbers: `dreampm materials TYPE` lists them.
+/// A material: a type of `dreampm materials` with values of its parameters. Words such as false and
+/// true are numbers too; `dreampm materials TYPE` lists them.
 struct Material {
   std::string name;                ///< as bodies and emitters call it
   std::string type = "newtonian";  ///< newtonian, elastic, snow, ...
-  /// By key. Keys that are not there have their defaults.
+  /// The values by key. Keys that are not there have their defaults.
   Values values{};
   std::string transfer = "apic";  ///< between its particles and the grid: apic, flip or asflip
   Values transfer_values{};       ///< flip_blend, flip_memory, ...: what the transfer takes

@@ -1,4 +1,4 @@
-// What changes with time in a scene: keys, and how shapes move.
+// Changes over time in a scene: keys, and motions of shapes.
 #pragma once
 #include <optional>
 #include <vector>
@@ -16,8 +16,8 @@ struct Key {
   friend bool operator==(const Key&, const Key&) = default;
 };
 
-/// Where a shape stands at a time: moved by `position` from where the scene gives it, and turned
-/// about a point of it.
+/// The pose of a shape at a time: moved by `position` from its place in the scene, and turned about
+/// one of its points.
 struct PoseKey {
   double t = 0;                ///< s
   Vec3d position{};            ///< m
@@ -28,7 +28,7 @@ struct PoseKey {
 
 namespace model {
 
-/// How a shape moves: by keys, or at a constant velocity and spin.
+/// The motion of a shape: by keys, or at a constant velocity and spin.
 struct Motion {
   std::vector<PoseKey> keys;   ///< by time
   bool smooth = false;         ///< with keys: it slows down at each; else straight from key to key

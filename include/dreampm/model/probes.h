@@ -1,5 +1,5 @@
-// What a scene measures while it runs: one struct for each type of probe. ProbeForm is the one list
-// of types.
+// Probes: measurements of a scene while it runs, one struct for each type. ProbeForm is the list of
+// types.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -39,7 +39,7 @@ struct FluxProbe {
   Vec3d normal;  ///< any length above 0
 };
 
-/// What lies within a shape.
+/// A probe of the matter within a shape.
 struct RegionProbe {
   static constexpr std::string_view type = "region";
   Shape shape;
@@ -51,7 +51,7 @@ struct ForceProbe {
   std::string on;  ///< a wall (floor, ceiling, x_min, ...), collider or rigid body
 };
 
-/// From where to where matter reaches along an axis.
+/// A probe of the extent of matter along an axis.
 struct ExtentProbe {
   static constexpr std::string_view type = "extent";
   std::uint8_t axis = 0;      ///< x, y, z
@@ -65,13 +65,13 @@ struct PointProbe {
   Vec3d at;          ///< m
 };
 
-/// Where a collider or rigid body stands, and how it moves.
+/// A probe of the pose and velocity of a collider or rigid body.
 struct PoseProbe {
   static constexpr std::string_view type = "pose";
   std::string on;  ///< the name of one
 };
 
-/// What comes in by an emitter, or goes out by a sink.
+/// A probe of the matter that came in by an emitter, or went out by a sink.
 struct InflowProbe {
   static constexpr std::string_view type = "inflow";
   std::string on;  ///< an emitter, a sink, or a collider that deletes

@@ -1,4 +1,4 @@
-// What a run writes, and how its matter is shown: files, surfaces, looks, camera, light, video.
+// Output of a run and appearance of its matter: files, surfaces, looks, camera, light, video.
 #pragma once
 #include <array>
 #include <map>
@@ -19,7 +19,7 @@ enum class SkyKind {
 
 namespace model {
 
-/// What `dreampm run` writes.
+/// The files that `dreampm run` writes.
 struct Output {
   std::string folder;                               ///< relative to the working folder; empty: out/NAME
   std::vector<std::string> attributes{"velocity"};  ///< of particle_attributes
@@ -31,7 +31,7 @@ inline constexpr std::array<const char*, 7> particle_attributes{"velocity", "f",
 
 enum class SurfaceFormat { ply, obj, vdb };
 
-/// How a surface is wrapped around particles.
+/// The settings of the surface that is wrapped around particles.
 struct Surface {
   double voxel = 0.5;  ///< in units of dx
   int smooth = 2;      ///< rounds of smoothing, 0 to 10
@@ -41,7 +41,7 @@ struct Surface {
 
 enum class LookType { dielectric, opaque, spheres, wood, metal, plastic };
 
-/// How a material, collider or rigid body looks.
+/// The appearance of a material, collider or rigid body.
 struct Look {
   LookType type = LookType::dielectric;
   double ior = 1.333;               ///< dielectric, 1.01 to 3
@@ -104,15 +104,15 @@ struct Light {
 enum class Floor { tiles, none };
 enum class Basin { glass, none };
 
-/// What stands around the matter.
+/// The objects around the matter in a picture.
 struct SceneProps {
   Floor floor = Floor::tiles;
   Basin basin = Basin::glass;
   bool operator==(const SceneProps&) const = default;
 };
 
-/// What a picture leaves out, to look inside: the part of some things on that side of a plane to
-/// which its normal points.
+/// A cut, which shows the inside: pictures leave out the part of some objects on that side of a
+/// plane to which its normal points.
 struct Cut {
   Vec3d point{};                ///< m
   Vec3d normal{};               ///< of any length above 0
@@ -120,7 +120,7 @@ struct Cut {
   bool operator==(const Cut&) const = default;
 };
 
-/// How pictures are drawn.
+/// The settings of pictures.
 struct Render {
   int width = 1920, height = 1080;  ///< pixels, both even
   int samples = 40;                 ///< at most, a pixel
@@ -131,8 +131,8 @@ struct Render {
   Light light;
   SceneProps stage;
   std::optional<Cut> cut;
-  /// By name. A material or collider without one gets water's where it is a liquid, else a matte
-  /// color.
+  /// Looks by name. A material or collider without one gets water's where it is a liquid, else a
+  /// matte color.
   std::map<std::string, Look> looks;
   bool operator==(const Render&) const = default;
 };

@@ -21,8 +21,8 @@
 
 namespace dreampm::model {
 
-/// Where a file says something, for messages that come later (a body outside the walls): 1-based;
-/// line 0: nowhere.
+/// A position in a file, for messages that come later (a body outside the walls): 1-based; line 0:
+/// none.
 struct Mark {
   int line = 0, column = 0;
 };
@@ -51,7 +51,7 @@ struct Scene {
   Render render;
   Video video;
 
-  /// By path ("bodies.drop"), of a scene that was read from a file.
+  /// Positions by path ("bodies.drop"), for a scene that was read from a file.
   std::map<std::string, Mark> marks;
 };
 

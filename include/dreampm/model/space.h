@@ -1,4 +1,4 @@
-// Where and when: the box that matter moves in, and the time that passes.
+// Space and time: the box in which matter moves, and the time that passes.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// How a world goes on from step to step.
+/// The method by which a world goes on from step to step.
 enum class SolverKind : std::uint8_t {
   explicit_steps,  ///< of all materials, as short as sound asks for
   projection       ///< of liquids, whose volume a pressure keeps, as long as their motion allows

@@ -18,8 +18,8 @@
 
 namespace dreampm {
 
-/// What one visit of every node found. The step that asked needs max_speed and finite at once, for
-/// the choice of dt; the rest are sums for reports.
+/// The result of one visit of every node. The step needs max_speed and finite at once, for the
+/// choice of dt; the rest are sums for reports.
 struct GridStats {
   double max_speed = 0;               ///< m/s, after walls, of nodes; after sub_cycle of what particles gather of them
   double mass = 0;                    ///< kg, of all nodes
@@ -27,7 +27,7 @@ struct GridStats {
   double kinetic = 0;                 ///< J, after walls
   double arrived = 0;                 ///< J, kinetic, of what keeps velocities, before the forces
   std::array<ImpulseSum, 6> walls{};  ///< in the order of World::walls
-  /// In the order of World::colliders. Inline capacity: 8 colliders without allocation.
+  /// Impulses in the order of World::colliders. Inline capacity: 8 colliders without allocation.
   boost::container::small_vector<ImpulseSum, 8> colliders;
   ImpulseSum damping;
   ImpulseSum fields;  ///< force fields
@@ -61,7 +61,7 @@ class Backend {
   virtual PassStats insert_particles(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds) = 0;
   /// One visit per node: momentum to velocity, gravity, damping, force fields, colliders, walls.
   virtual GridStats grid_update(World<R>& world, double dt) = 0;
-  /// After grid_update, which leaves these to it: gravity, stress and viscosity of the step in
+  /// Sub-cycles what grid_update leaves to it: gravity, stress and viscosity of the step in
   /// world.viscous_stages stages, with contact in each. Brings `found` up to date and returns the
   /// heat of viscosity [J].
   virtual double sub_cycle(World<R>& world, double dt, GridStats& found) = 0;
@@ -74,8 +74,8 @@ class Backend {
 
   // After an edit of the particles, of their laws or of walls; begins with `sort`.
 
-  /// What the laws of the particles say as these stand: wave speed, viscosity, range of J, whether
-  /// all is finite.
+  /// Returns bounds from the laws of the particles in their present state: wave speed, viscosity,
+  /// range of J, and whether all is finite.
   virtual PassStats state_bounds(const World<R>& world) = 0;
   /// Clears the grid and scatters mass, momentum and affine motion of all particles, and the force
   /// of world.dt_next. Laws are taken anew from the sets' values. `motion`: in the order of the
@@ -88,9 +88,9 @@ class Backend {
   /// Makes what `fields` name current in the World's arrays and in `motion`. Whoever reads them
   /// outside of backend/ and state/ calls it before. Changes nothing that the verbs see.
   virtual void download(World<R>& /*world*/, Motion<R>& /*motion*/, MatterFields /*fields*/) {}
-  /// What `fields` name was changed in the World's arrays or in `motion`, by an edit: the verbs and
-  /// reductions to come go by that. The order and the number of particles may be others only where
-  /// all of MatterFields::particles are named.
+  /// Takes over the `fields` that an edit changed in the World's arrays or in `motion`; later verbs
+  /// and reductions use them. The order and the number of particles may differ only where all of
+  /// MatterFields::particles are named.
   virtual void upload(const World<R>& /*world*/, const Motion<R>& /*motion*/, MatterFields /*fields*/) {}
 
   // Reductions: sums over particles and nodes as the verbs left them, without a download. In a

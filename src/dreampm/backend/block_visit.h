@@ -1,4 +1,4 @@
-// What one visit of the grid does to the nodes of one block, in a step and in its stages.
+// The visit of one block of the grid, in a step and in its viscous stages.
 #pragma once
 #include <bit>
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// As a field's matter feels them: friction is for solids and grains.
+/// Returns the walls as a field's matter feels them: friction is for solids and grains.
 template <class R>
 BoxWalls<R> box_walls(const World<R>& world, std::size_t field) {
   const bool frictional = !world.holds_liquid(field);
@@ -38,14 +38,14 @@ struct BlockStats {
   enum Source : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
 
   NodeSums sums;
-  double arrived2 = 0;  ///< twice GridStats::arrived [J]
-  double driven = 0;    ///< J: what gravity and stress did in a stage
-  /// Of the sources that acted: most blocks have none or one.
+  double arrived2 = 0;       ///< twice GridStats::arrived [J]
+  double external_work = 0;  ///< J: what gravity and stress did in a stage
+  /// Impulses of the sources that acted: most blocks have none or one.
   std::vector<std::pair<std::size_t, ImpulseSum>> impulses;
 
   void clear() {
     sums = {};
-    arrived2 = driven = 0;
+    arrived2 = external_work = 0;
     impulses.clear();
   }
   ImpulseSum& impulse_of(std::size_t source) {
@@ -55,7 +55,7 @@ struct BlockStats {
   }
 };
 
-/// What is the same for all nodes in one step.
+/// Constants of all nodes in one step.
 template <class R>
 struct NodeStep {
   const World<R>& world;
@@ -66,7 +66,7 @@ struct NodeStep {
   R diffusion;  ///< dt/dx^2 [s/m^2]
   R dx;         ///< m
   R per_dt;     ///< dx/dt [m/s]
-  bool skin;    ///< whether a wall slows liquids by its boundary layer
+  bool skin;    ///< true if a wall slows liquids by its boundary layer
   // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces;
   // what is left of it acts on its own, for this part of the step. It is rare: a node with next to
   // nothing of a solid, a liquid that solves its own viscosity implicitly.
@@ -85,7 +85,7 @@ struct NodeStep {
         skin(of_step > 0 && w.has_skin_friction() && !w.grid.mixture.empty()),
         staged_drag(static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx))),
         part(static_cast<R>(of_step)) {}
-  /// What of a drag acts on its own.
+  /// Returns the part of a drag that the stages leave to this visit.
   R unstaged(const R& drag) const { return part * std::max(R(0), drag - staged_drag); }
 };
 
@@ -107,7 +107,7 @@ constexpr std::uint64_t plane_of(int axis, int i) {
   return first[axis] << (node_step[axis] * i);
 }
 
-/// Those on walls or behind.
+/// Returns a bit for each node of a block that lies on a wall or behind it.
 template <class R>
 std::uint64_t nodes_at_walls(const World<R>& world, const Vec3i& block) {
   std::uint64_t nodes = 0;
@@ -204,7 +204,7 @@ class BlockVisit {
         const Vec3<R> before = velocity(old[n]), now = velocity(node);
         Vec3<R> driven = stage.kick * node.m;
         if (stress) driven += velocity(stress[n]);
-        found_.driven += 0.5 * stage.part * static_cast<double>(dot(driven, before + now));
+        found_.external_work += 0.5 * stage.part * static_cast<double>(dot(driven, before + now));
         if (!(now == before + velocity(change[n]))) set_velocity(change[n], now - before);
       });
     }

@@ -29,7 +29,7 @@ class BodyCoupling {
     double stiffness = 0;  ///< e_s A_s [kg]; 0 where the point does not act
   };
 
-  /// Before a solve of a step of `dt` [s].
+  /// Begins a solve of a step of `dt` [s].
   template <class R>
   void begin(const World<R>& world, double dt);
   bool any() const { return !bodies_.empty(); }

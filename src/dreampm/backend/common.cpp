@@ -62,7 +62,7 @@ BlockWalls<R> block_walls(const World<R>& world, const Vec3i& block, bool collid
     const bool low = world.walls[2 * a].type != WallType::open, high = world.walls[2 * a + 1].type != WallType::open;
     w.low[a] = low ? static_cast<R>(world.low[a] - from[a]) : R(-far_away);
     w.high[a] = high ? static_cast<R>(world.high[a] - from[a]) : R(far_away);
-    w.shades[a] = (low && !has_image_mass(world, 2 * a)) || (high && !has_image_mass(world, 2 * a + 1));
+    w.truncates_kernel[a] = (low && !has_image_mass(world, 2 * a)) || (high && !has_image_mass(world, 2 * a + 1));
     w.near = w.near || w.low[a] > R(first - reach) || w.high[a] < R(last + reach);
   }
   return w;
@@ -106,7 +106,7 @@ template <class R>
 void fit_grid(const World<R>& world, GridFields<R>& next) {
   const std::size_t nodes = world.grid.nodes.size();
   visit_nodes(next, world.grid, [&]<class F>(const F& field, auto& to, const auto& now) {
-    // What a sort does not carry over is there as the step to come needs it.
+    // Arrays that a sort does not carry over get the size that the coming step needs.
     to.resize(F::use.carried ? now.size() : field.needed(world) ? nodes : 0);
   });
 }

@@ -1,4 +1,4 @@
-// What every backend does alike, in plain loops: visiting nodes and inserting particles.
+// Functions that all backends share, in plain loops: visits of nodes and insertion of particles.
 #pragma once
 #include <algorithm>
 #include <memory>
@@ -17,18 +17,17 @@ namespace dreampm {
 /// The grid's blocks that every block of particles reaches, in the memory of `all`.
 template <class R>
 void find_stencil_blocks(const World<R>& world, std::vector<StencilBlocks>& all);
-/// Whether a collider is within reach of the particles of a block that reaches those.
+/// True if a collider is within reach of the particles of a block that reaches those.
 inline bool colliders_near(const Obstacles& obstacles, const StencilBlocks& stencil_blocks) {
   return obstacles.any() && std::any_of(stencil_blocks.begin(), stencil_blocks.end(), [&](std::int32_t b) {
            return b != BlockList::none && obstacles.near(static_cast<std::size_t>(b));
          });
 }
 
-/// What the particles of one block see of colliders that are too thin for the splines between the
-/// nodes.
+/// The colliders near one block of particles that are too thin for the splines between the nodes.
 class ThinWalls {
  public:
-  /// Of the block of particles that reaches these blocks of the grid.
+  /// Finds them for the block of particles that reaches these blocks of the grid.
   ThinWalls(const Obstacles& obstacles, const StencilBlocks& stencil_blocks) {
     if (!obstacles.any_thin()) return;
     for (std::size_t n = 0; n < stencil_blocks.size(); ++n) {
@@ -65,16 +64,16 @@ class GridUpdate {
  public:
   explicit GridUpdate(const NodeLoops<R>& loops = plain_node_loops<R>());
   ~GridUpdate();
-  /// After every change of the grid's block list.
+  /// Must be called after every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
-  /// After colliders have moved alone.
+  /// Must be called after colliders have moved, if nothing else changed.
   void colliders_moved(const World<R>& world, const Obstacles& obstacles);
   GridStats operator()(World<R>& world, const Obstacles& obstacles, double dt);
-  /// As in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which are as long as the
-  /// world's, with what the viscous stress of the velocities as they are would give in all of dt.
-  /// `fastest()`: of particles, the largest speed that they gather [m/s]. Nodes do not show it
-  /// here: one at the rim with a thousandth of a particle's mass goes with the stress beside it for
-  /// as long as the step is.
+  /// Sub-cycles viscosity as in Backend::sub_cycle. `forces()` fills the fields of `momenta`, which
+  /// are as long as the world's, with the momentum that the viscous stress of the present
+  /// velocities would give in all of dt. `fastest()`: the largest speed that particles gather
+  /// [m/s]. Nodes do not show it here: one at the rim with a thousandth of a particle's mass goes
+  /// with the stress beside it for as long as the step is.
   template <class Forces, class Speed>
   double sub_cycle(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found,
                    const GridFields<R>& momenta, const Forces& forces, const Speed& fastest) {

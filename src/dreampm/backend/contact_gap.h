@@ -31,7 +31,7 @@ struct Bounds {
 /// depend on the number of threads.
 class ContactGaps {
  public:
-  /// After every change of the grid's block list or of the particles' order.
+  /// Must be called after every change of the grid's block list or of the particles' order.
   template <class R>
   void prepare(const World<R>& world, const Obstacles& obstacles);
   // A pass that moves particles may measure each block as it leaves it, while the processor still
@@ -47,7 +47,7 @@ class ContactGaps {
   template <class R>
   void measure(ThreadTeam& team, const World<R>& world, const Obstacles& obstacles);
 
-  /// Whether matter of that field of the grid has gaps.
+  /// True if matter of that field of the grid has gaps.
   template <class R>
   bool has(const World<R>& world, std::size_t field) const {
     return !near_blocks_.empty() && !world.holds_liquid(field);
@@ -58,7 +58,7 @@ class ContactGaps {
     const std::int32_t t = walls_of_.empty() ? -1 : walls_of_[block][static_cast<std::size_t>(side)];
     return t < 0 ? nullptr : &walls_[static_cast<std::size_t>(t)].gap;
   }
-  /// Where no matter is near [cells]: a gap that none closes within a step.
+  /// The gap where no matter is near [cells]: none closes it within a step.
   static constexpr float none = 1e6f;
   /// The nodes among these whose gap is closed, a bit each.
   std::uint16_t closed(std::size_t block, int side) const;
@@ -72,8 +72,8 @@ class ContactGaps {
     float at(const SurfacePoint& point);
 
    private:
-    /// By the first node of a point's stencil, from -1 on along each axis, the smallest gap of the
-    /// particles whose stencils begin there or beside: many points ask for the same.
+    /// The smallest gap of the particles whose stencils begin at a node or beside it, by the first
+    /// node of a point's stencil, from -1 on along each axis: many points ask for the same.
     static constexpr int width = block_width + 1;
     using Smallest = std::array<float, width * width * width>;
     void find_smallest(int side);
@@ -107,7 +107,7 @@ class ContactGaps {
     std::array<SideGaps, 6> gap;
     std::array<std::uint8_t, 6> any{1, 1, 1, 1, 1, 1};  ///< whether any of a side may be less than `none`
   };
-  /// Those of one side, or of nothing; `slots` as in gaps_of_.
+  /// Returns the gaps of one side, or empty ones; `slots` as in gaps_of_.
   const SideGaps& gaps_at(std::int32_t slots, int side) const;
   bool any_at(std::int32_t slots, int side) const {
     return slots >= 0 && cell_gaps_[static_cast<std::size_t>(slots)].any[static_cast<std::size_t>(side)] != 0;

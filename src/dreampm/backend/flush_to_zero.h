@@ -6,7 +6,7 @@
 
 namespace dreampm {
 
-/// While it lives this thread takes them for zero; the caller's mode comes back afterwards. A
+/// A scope in which this thread takes them for zero; the caller's mode comes back afterwards. A
 /// thread of a loop has a mode of its own.
 class FlushToZero {
  public:

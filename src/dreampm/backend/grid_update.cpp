@@ -38,36 +38,37 @@ struct GridUpdate<R>::Work {
   MirrorWalls<R> images;
   SurfaceContact<R> surfaces;
   ContactGaps gaps;
-  std::vector<std::uint32_t> late;  ///< blocks whose contact has to wait for what others do
-  // By block.
+  std::vector<std::uint32_t> deferred_blocks;  ///< blocks whose contact has to wait for the results of others
+  // Arrays by block.
   std::vector<std::uint64_t> at_walls;
-  std::vector<BlockStats> found;
+  std::vector<BlockStats> block_stats;
   std::vector<GridStats> sums;  ///< of blocks_a_sum blocks each
-  // Of force fields; empty without any.
+  // Impulses of force fields; empty without any.
   std::array<std::vector<Vec3<R>>, 2> field_impulses;  ///< kg m/s, by field and node
-  // Of the stages of viscosity.
+  // State of the viscous stages.
   std::array<Nodes<R>, 2> old, change;  ///< see RklStage
-  GridStats newest;                     ///< what the last one found,
-  GridStats moved;                      ///< what contact gave in it, with what is kept of those before,
-  GridStats all;                        ///< and in all of them
-  double before = 0, driven = 0;        ///< J: kinetic energy, and what gravity and stress did
+  GridStats stage_stats;                ///< result of the last stage
+  GridStats stage_contact;  ///< impulses of contact in the last stage, with the part of earlier ones that it keeps
+  GridStats contact_sum;    ///< impulses of contact, summed over all stages
+  double kinetic_before = 0,
+         external_work = 0;  ///< J: kinetic energy before the stages, and work of gravity and stress in them
 
-  /// Visits every block: first(visit of a block), contact, last(visit of a block).
+  /// Visits every block: first(visit of a block), contact, last(visit of a block). `measure`: true
+  /// to measure the gaps anew.
   template <class First, class Last>
-  /// `measure`: whether the gaps are to be measured anew.
   GridStats visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, bool measure,
                   const First& first, const Last& last);
-  /// Whether contact of that block has to wait for what others do.
+  /// True if contact in that block has to wait for the results of other blocks.
   bool waits(std::size_t block) const { return images.changes(block) || surfaces.changes(block); }
-  /// In the order of the blocks.
+  /// Adds up the results of some blocks in their order.
   void add_up(const World<R>& world, std::size_t some);
   GridStats total(const World<R>& world);
   void clear_field_impulses(const World<R>& world);
-  /// What force fields gave [J], when all that acts in the step has acted: their impulse at the
-  /// velocity that moves the matter. They act on velocities that hold the impulse of stress, but
-  /// not yet that of walls and images. Where all these hold matter against a field nothing moves,
-  /// and with the velocity of the moment the square of an impulse would count as work in every
-  /// step.
+  /// Returns the work of force fields [J], after all else in the step has acted: their impulse at
+  /// the velocity that moves the matter. Fields act on velocities that hold the impulse of stress,
+  /// but not yet that of walls and images. Where all these hold matter against a field nothing
+  /// moves, and with the velocity of the moment the square of an impulse would count as work in
+  /// every step.
   double field_work(const World<R>& world);
 };
 
@@ -99,24 +100,26 @@ template <class First, class Last>
 GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles, const NodeStep<R>& step, bool measure,
                                      const First& first, const Last& last) {
   const std::size_t blocks = world.grid.blocks.size();
-  const bool all_late = late.size() == blocks;
+  const bool all_deferred = deferred_blocks.size() == blocks;
   parallel_region([&](ThreadTeam& team) {
     const FlushToZero mode;
     const auto block = [&](std::size_t b) {
-      return BlockVisit<R>(step, loops, world, obstacles, gaps, b, at_walls[b], found[b]);
+      return BlockVisit<R>(step, loops, world, obstacles, gaps, b, at_walls[b], block_stats[b]);
     };
     if (measure) gaps.measure(team, world, obstacles);
     team.loop(blocks, blocks_at_once, [&](std::size_t b) {
       BlockVisit<R> one = block(b);
       first(one);
-      if (!all_late && !waits(b)) one.apply_boundaries();
+      if (!all_deferred && !waits(b)) one.apply_boundaries();
     });
-    surfaces(team, world, obstacles, 0, gaps, step.per_dt, found);
-    if (!world.grid.solids.empty()) surfaces(team, world, obstacles, 1, gaps, step.per_dt, found);
+    surfaces(team, world, obstacles, 0, gaps, step.per_dt, block_stats);
+    if (!world.grid.solids.empty()) surfaces(team, world, obstacles, 1, gaps, step.per_dt, block_stats);
     images.fold_ghosts(team, world, loops, gaps);
     if (!world.grid.solids.empty())
-      team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_two_field_contact(); });
-    team.loop(late.size(), blocks_at_once, [&](std::size_t i) { block(late[i]).apply_boundaries(); });
+      team.loop(deferred_blocks.size(), blocks_at_once,
+                [&](std::size_t i) { block(deferred_blocks[i]).apply_two_field_contact(); });
+    team.loop(deferred_blocks.size(), blocks_at_once,
+              [&](std::size_t i) { block(deferred_blocks[i]).apply_boundaries(); });
     images.reflect_ghosts(team, world, loops);
     team.loop(sums.size(), 1, [&](std::size_t some) { add_up(world, some); });
     last(team, block);
@@ -131,14 +134,14 @@ void GridUpdate<R>::Work::add_up(const World<R>& world, std::size_t some) {
   total.colliders.resize(world.colliders.size());
   const std::size_t begin = some * blocks_a_sum, end = std::min(world.grid.blocks.size(), begin + blocks_a_sum);
   for (std::size_t b = begin; b < end; ++b) {
-    const NodeSums& s = found[b].sums;
+    const NodeSums& s = block_stats[b].sums;
     total.max_speed = std::max(total.max_speed, std::sqrt(s.fastest2));
     total.mass += s.mass;
     total.kinetic += 0.5 * s.kinetic2;
-    total.arrived += 0.5 * found[b].arrived2;
+    total.arrived += 0.5 * block_stats[b].arrived2;
     total.moment += world.node_position(world.grid.blocks[b] * block_width) * s.mass + s.moment * world.dx;
     total.finite = total.finite && s.finite;
-    for (const auto& [source, sum] : found[b].impulses) impulse_of(total, source) += sum;
+    for (const auto& [source, sum] : block_stats[b].impulses) impulse_of(total, source) += sum;
   }
 }
 
@@ -163,19 +166,19 @@ void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   work_->images.prepare(world);
   work_->surfaces.prepare(world, obstacles);
   work_->gaps.prepare(world, obstacles);
-  work_->found.resize(std::max(work_->found.size(), blocks));
+  work_->block_stats.resize(std::max(work_->block_stats.size(), blocks));
   work_->sums.resize((blocks + blocks_a_sum - 1) / blocks_a_sum);
-  // Where solids have a field of their own a block looks at the masses of those around it.
+  // If solids have a field of their own, a block reads the masses of its neighbors.
   const bool all = !world.grid.solids.empty();
-  work_->late.clear();
+  work_->deferred_blocks.clear();
   work_->at_walls.clear();
   const bool everywhere = world.settings.damping > 0 || !world.fields.empty();
   for (std::size_t b = 0; b < blocks; ++b) {
     work_->at_walls.push_back(nodes_at_walls(world, world.grid.blocks[b]));
     // So that no step takes memory.
     if (everywhere || work_->at_walls.back() || !obstacles.at(b).empty())
-      work_->found[b].impulses.reserve(BlockStats::first_collider + world.colliders.size());
-    if (all || work_->waits(b)) work_->late.push_back(static_cast<std::uint32_t>(b));
+      work_->block_stats[b].impulses.reserve(BlockStats::first_collider + world.colliders.size());
+    if (all || work_->waits(b)) work_->deferred_blocks.push_back(static_cast<std::uint32_t>(b));
   }
 }
 
@@ -201,9 +204,9 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
 template <class R>
 void GridUpdate<R>::begin_stages(const World<R>& world, const GridStats& found) {
   Work& w = *work_;
-  w.before = found.kinetic, w.driven = 0;
-  w.moved = w.all = {};
-  w.moved.colliders.resize(world.colliders.size()), w.all.colliders.resize(world.colliders.size());
+  w.kinetic_before = found.kinetic, w.external_work = 0;
+  w.stage_contact = w.contact_sum = {};
+  w.stage_contact.colliders.resize(world.colliders.size()), w.contact_sum.colliders.resize(world.colliders.size());
   for (std::size_t f = 0; f < 2; ++f) {
     const std::size_t nodes = world.grid.field(f).size();
     w.old[f].resize(nodes), w.change[f].assign(nodes, {});
@@ -218,7 +221,7 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
   // stage ends at (j^2 + j)/(s^2 + s) of it.
   const double stages = world.viscous_stages, unit = 2 / (stages * (stages + 1)), kept = (stage - 1.0) / stage;
   const double gain = (2.0 * stage - 1) / stage * unit;
-  // What a stage gives is kept on in part by those after it: gains are what adds up to the whole
+  // Later stages keep a part of a stage's change: the gains are the parts that add up to the whole
   // step.
   const NodeStep<R> step(world, dt, gain);
   const RklStage<R> now{static_cast<R>(kept),
@@ -228,32 +231,33 @@ void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, doubl
                         momenta,
                         w.old,
                         w.change};
-  w.newest = w.visit(
+  w.stage_stats = w.visit(
       world, obstacles, step, false, [&](BlockVisit<R>& block) { block.rkl_stage(now); },
       [&](ThreadTeam& team, const auto& block) {
         team.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).store_increment(now); });
       });
-  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.driven += w.found[b].driven;
-  // What contact gives in a stage is part of the change that those after it go on with.
+  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.external_work += w.block_stats[b].external_work;
+  // Impulses of contact in a stage are part of the change that later stages keep.
   const auto add = [&](ImpulseSum& moved, ImpulseSum& all, const ImpulseSum& given) {
     moved = {moved.impulse * kept + given.impulse, moved.angular * kept + given.angular,
              moved.work * kept + given.work};
     all += moved;
   };
-  for (std::size_t side = 0; side < 6; ++side) add(w.moved.walls[side], w.all.walls[side], w.newest.walls[side]);
-  for (std::size_t c = 0; c < w.newest.colliders.size(); ++c)
-    add(w.moved.colliders[c], w.all.colliders[c], w.newest.colliders[c]);
+  for (std::size_t side = 0; side < 6; ++side)
+    add(w.stage_contact.walls[side], w.contact_sum.walls[side], w.stage_stats.walls[side]);
+  for (std::size_t c = 0; c < w.stage_stats.colliders.size(); ++c)
+    add(w.stage_contact.colliders[c], w.contact_sum.colliders[c], w.stage_stats.colliders[c]);
 }
 
 template <class R>
 double GridUpdate<R>::end_stages(const World<R>& world, GridStats& found) {
   Work& w = *work_;
   found.fields.work = w.field_work(world);
-  found.kinetic = w.newest.kinetic;
-  found.finite = found.finite && w.newest.finite;
-  for (std::size_t side = 0; side < 6; ++side) found.walls[side] += w.all.walls[side];
-  for (std::size_t c = 0; c < found.colliders.size(); ++c) found.colliders[c] += w.all.colliders[c];
-  return w.before - w.newest.kinetic + w.driven + w.all.contact().work;
+  found.kinetic = w.stage_stats.kinetic;
+  found.finite = found.finite && w.stage_stats.finite;
+  for (std::size_t side = 0; side < 6; ++side) found.walls[side] += w.contact_sum.walls[side];
+  for (std::size_t c = 0; c < found.colliders.size(); ++c) found.colliders[c] += w.contact_sum.colliders[c];
+  return w.kinetic_before - w.stage_stats.kinetic + w.external_work + w.contact_sum.contact().work;
 }
 
 template <class R>

@@ -4,7 +4,7 @@
 
 namespace dreampm {
 
-/// What matter received from one source in a step.
+/// Impulse, angular impulse and work that matter received from one source in a step.
 template <class R>
 struct ImpulseSumOf {
   Vec3<R> impulse{};  ///< N s

@@ -1,4 +1,4 @@
-// Which parts of the matter a reader or an edit names.
+// The parts of the matter that a reader or an edit names.
 #pragma once
 
 namespace dreampm {

@@ -15,8 +15,8 @@
 
 namespace dreampm {
 
-/// Whether the matter before this side of the box has an image with mass: a wall that particles do
-/// not pass, three cells or more from the opposite one.
+/// True if the matter before this side of the box has an image with mass: at a wall that particles
+/// do not pass, three cells or more from the opposite one.
 template <class R>
 bool has_image_mass(const World<R>& world, int side);
 
@@ -34,7 +34,7 @@ class MirrorWalls {
   /// Finds the blocks behind walls: after every change of the grid's block list.
   void prepare(const World<R>& world);
 
-  /// Whether fold_ghosts or reflect_ghosts may change nodes of this grid block.
+  /// True if fold_ghosts or reflect_ghosts may change nodes of this grid block.
   bool changes(std::size_t block) const { return changes_[block] != 0; }
 
   /// Mixes the image of every node behind a wall that sticks, or separates or slips without
@@ -44,8 +44,8 @@ class MirrorWalls {
   void fold_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops, const ContactGaps& gaps);
   /// Gives the nodes behind walls that were folded the velocity of their image.
   void reflect_ghosts(ThreadTeam& team, World<R>& world, const NodeLoops<R>& loops);
-  /// What the walls gave in the last fold_ghosts and reflect_ghosts. Returns the kinetic energy
-  /// gained [J].
+  /// Adds the impulses of walls in the last fold_ghosts and reflect_ghosts. Returns the kinetic
+  /// energy gained [J].
   double add_impulses(std::array<ImpulseSum, 6>& walls) const;
 
   /// Adds the masses of the images to all fields, and what matter takes of the nodes' kernels: a
@@ -62,7 +62,7 @@ class MirrorWalls {
     int side;
     std::array<bool, 2> folds;  ///< by field
   };
-  /// What a layer did to one field.
+  /// Sums of a layer's change of one field.
   struct Done {
     ImpulseSum impulses;
     double gained = 0;

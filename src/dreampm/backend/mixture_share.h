@@ -1,12 +1,12 @@
-// What one particle adds to the nodes of a mixture.
+// The share of one particle in the mixture of nodes.
 #pragma once
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
 
-/// As namespace mixture (state/grid.h) has it: the volume that the particle fills and its viscosity
-/// if it is liquid, or what it blocks.
+/// The share of a particle in the mixture (state/grid.h): the volume that it fills and its
+/// viscosity if it is liquid, else the volume that it blocks.
 template <class R>
 class MixtureShare {
  public:

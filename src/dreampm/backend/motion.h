@@ -1,4 +1,4 @@
-// What a pass over the particles says of how they move.
+// The motion of particles, as a pass over them reports it.
 #pragma once
 #include <vector>
 

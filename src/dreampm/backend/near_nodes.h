@@ -1,4 +1,4 @@
-// What a block of particles asks of the nodes that it reaches, to find its gaps before colliders.
+// Nodes in reach of a block of particles, as the search for its gaps before colliders needs them.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace dreampm {
 
-/// Of the blocks that a block of particles reaches the one with that node, which counts from the
-/// first of them,
+/// Returns the number of the block with that node among those that a block of particles reaches;
+/// nodes count from the first of them.
 inline std::size_t reached_at(const Vec3i& node) {
   return static_cast<std::size_t>((node.x >> 2) * 4 + (node.y >> 2) * 2 + (node.z >> 2));
 }
@@ -20,8 +20,8 @@ inline std::size_t node_at(const Vec3i& node) {
   return static_cast<std::size_t>(node_index(node.x & 3, node.y & 3, node.z & 3));
 }
 
-/// Of each number and the two that follow at `step`; behind the last it stays as it is: no stencil
-/// begins there.
+/// Writes the least of each number and the two that follow at `step`; the last numbers stay as they
+/// are: no stencil begins there.
 template <std::size_t nodes>
 void least_of_three(const float* f, std::array<float, nodes>& to, std::size_t step) {
   float* const t = to.data();

@@ -1,4 +1,5 @@
-// What every step does to all nodes of a block, over any lane type: momentum to velocity, and sums.
+// Loops over the nodes of a block in every step, over any lane type: momentum to velocity, and
+// sums.
 #pragma once
 #include <bit>
 #include <type_traits>
@@ -12,7 +13,7 @@ namespace dreampm {
 /// Masses of nodes below this count as nothing: a stencil's outermost weights.
 inline constexpr double least_mass = 1e-36;
 
-/// What the nodes of one block add up to.
+/// Sums over the nodes of one block.
 struct NodeSums {
   double mass = 0;      ///< kg
   Vec3d moment{};       ///< of mass times place within the block [kg cells]
@@ -78,7 +79,7 @@ inline Vec3d place_in_block(std::size_t n) {
   return {at[0][n], at[1][n], at[2][n]};
 }
 
-/// Whether all is zero in a block, as in many at the rim of the grid.
+/// True if all nodes of a block are zero, as in many blocks at the rim of the grid.
 template <class R>
 DM_FN bool is_empty(const Node<R>* nodes) {
   using Bits = std::conditional_t<sizeof(R) == 4, std::uint32_t, std::uint64_t>;
@@ -104,7 +105,7 @@ inline constexpr PlanePlaces<R> plane_places;
 // `Row` handles as many nodes as S has lanes: load, store, numbers, sum, largest, bits, mask, as
 // OneNode does for plain numbers.
 
-/// Of all lanes.
+/// Returns the sum over all lanes.
 template <class Row, class S>
 DM_FN ImpulseSum sum_of(const ImpulseSumOf<S>& impulses) {
   const auto sum = [](const Vec3<S>& v) __attribute__((always_inline)) {
@@ -188,7 +189,7 @@ DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& wall
   impulses += sum_of<Row>(given);
 }
 
-/// Of a plane's nodes from `n` on, with places from its first on.
+/// Returns the offsets of a plane's nodes from `n` on, from the plane's first node.
 template <class S, class Row>
 DM_FN Vec3<S> places_in_plane(int axis, int n) {
   const auto& at = plane_places<Scalar<S>>;
@@ -207,8 +208,8 @@ struct PlaneCopy {
   DM_FN PlaneCopy(const Node<R>* first, int axis) {
     for (int n = 0; n < plane_nodes; ++n) nodes[n] = first[node_in_plane(axis, n)];
   }
-  /// Puts those of `some`, a bit each, back.
-  DM_FN void put(Node<R>* first, int axis, unsigned some) const {
+  /// Writes the nodes of `some`, a bit each, back.
+  DM_FN void store(Node<R>* first, int axis, unsigned some) const {
     for (; some; some &= some - 1) {
       const int n = std::countr_zero(some);
       first[node_in_plane(axis, n)] = nodes[n];
@@ -246,7 +247,7 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, ImpulseSu
     Row::store(after, m, inners.nodes + n);
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
   }
-  inners.put(planes.inners, axis, folded);
+  inners.store(planes.inners, axis, folded);
   impulses += sum_of<Row>(given);
   return static_cast<std::uint16_t>(folded);
 }
@@ -271,7 +272,7 @@ DM_FN double reflect_planes(const MirrorPlanes<Scalar<S>>& planes, std::uint16_t
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
     gained2 += m * (dot(after, after) - dot(before, before));
   }
-  ghosts.put(planes.ghosts, axis, folded);
+  ghosts.store(planes.ghosts, axis, folded);
   impulses += sum_of<Row>(given);
   return 0.5 * static_cast<double>(Row::sum(gained2));
 }

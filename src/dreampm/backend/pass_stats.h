@@ -1,4 +1,4 @@
-// What a pass over the particles reports. Kernels add to it too, so this header needs vectors
+// The report of a pass over the particles. Kernels add to it too, so this header needs vectors
 // alone.
 #pragma once
 #include <cstdint>
@@ -10,17 +10,17 @@ namespace dreampm {
 /// Energies of the particles in a pass [J].
 struct PassEnergy {
   double kinetic = 0;
-  double keeping = 0;                            ///< of it, of sets that keep velocities
-  double viscous = 0, plastic = 0, relaxed = 0;  ///< turned into heat in this step
+  double kept_kinetic = 0;                       ///< the part of sets that keep velocities
+  double viscous = 0, plastic = 0, relaxed = 0;  ///< parts turned into heat in this step
   PassEnergy& operator+=(const PassEnergy& b) {
-    const auto& [b_kinetic, b_keeping, b_viscous, b_plastic, b_relaxed] = b;
-    kinetic += b_kinetic, keeping += b_keeping;
+    const auto& [b_kinetic, b_kept_kinetic, b_viscous, b_plastic, b_relaxed] = b;
+    kinetic += b_kinetic, kept_kinetic += b_kept_kinetic;
     viscous += b_viscous, plastic += b_plastic, relaxed += b_relaxed;
     return *this;
   }
 };
 
-/// What one pass over every particle found.
+/// The result of one pass over every particle.
 struct PassStats {
   double wave_speed = 0;  ///< m/s
   double viscosity = 0;   ///< m^2/s
@@ -28,9 +28,9 @@ struct PassStats {
   std::uint64_t pushed = 0;  ///< particles that a wall had to push back inside
   bool finite = true;
   PassEnergy energy;
-  Vec3d shifted{};     ///< kg m: mass times what liquids were shifted by,
-  Vec3d turned{};      ///< and what this gave to angular momentum [kg m^2/s]
-  double swollen = 0;  ///< m^3, of liquids beyond that at rest (P2GTerms::swollen)
+  Vec3d shifted{};     ///< mass times shift of the liquids [kg m]
+  Vec3d turned{};      ///< angular momentum gained by shifts [kg m^2/s]
+  double swollen = 0;  ///< volume of liquids beyond that at rest [m^3] (P2GTerms::swollen)
   void add(const PassStats& b);
 };
 

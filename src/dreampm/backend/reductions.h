@@ -27,7 +27,7 @@ Balance balance(const World<R>& world, const Motion<R>& motion);
 template <class R>
 double stress_power(const World<R>& world, const Motion<R>& motion);
 
-/// What nodes hold: momenta between steps, velocities after grid_update.
+/// The content of nodes: momenta between steps, velocities after grid_update.
 enum class NodesHold { momenta, velocities };
 
 /// The momentum and angular momentum of all nodes; no work.

@@ -65,7 +65,7 @@ class ReachedNodes {
   static constexpr std::size_t index(const Vec3i& n) {
     return static_cast<std::size_t>((n.x * width + n.y) * width + n.z);
   }
-  /// Whether no block comes twice, as on periodic axes of one block.
+  /// True if no block comes twice, as blocks do on periodic axes of one block.
   static bool suit(const StencilBlocks& blocks) {
     for (std::size_t n = 0; n < blocks.size(); ++n)
       if (blocks[n] != BlockList::none && std::find(blocks.begin() + n + 1, blocks.end(), blocks[n]) != blocks.end())

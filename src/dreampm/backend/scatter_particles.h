@@ -7,7 +7,7 @@
 
 namespace dreampm {
 
-/// What a particle adds to the grid, x_i - x_p in cells.
+/// The terms that a particle adds to the grid, x_i - x_p in cells.
 template <class R>
 struct ParticleTerms {
   Vec3<R> momentum;       ///< m v
@@ -59,12 +59,12 @@ void add_particle(const World<R>& world, const ParticleSet<R>& set, const SetSte
       for (int k = 0; k < 3; ++k) share.add_to(to.mixture[node(i, j, k)], stencil.weight(i, j, k));
 }
 
-/// As Backend::state_bounds.
+/// Implements Backend::state_bounds.
 template <class R>
 PassStats state_bounds(const World<R>& world);
 
-/// As Backend::scatter_particles. The particles must have been sorted, and `obstacles` prepared
-/// since. The bits do not depend on the number of threads.
+/// Implements Backend::scatter_particles. The particles must have been sorted, and `obstacles`
+/// prepared since. The bits do not depend on the number of threads.
 template <class R>
 void scatter_particles(World<R>& world, const Motion<R>& motion, const Obstacles& obstacles);
 

@@ -1,4 +1,4 @@
-// Where the surface of a solid lies, by the mass of its nodes.
+// The surface of a solid, found from the mass of its nodes.
 #pragma once
 #include <array>
 #include <cstdlib>
@@ -77,7 +77,8 @@ class SolidMass {
     for (int k = 0; k < block_width; ++k) to[k + 1] = node(1, k);
     to[width - 1] = node(2, 0);
   }
-  /// At a node of the block or next to it, with the images across the axes from `axis` on.
+  /// Returns the mass at a node of the block or next to it, with the images across the axes from
+  /// `axis` on.
   R mass(const Vec3i& at, int axis = 0) const {
     if (axis == 3) return own_mass(at.x, at.y, at.z);
     R sum = mass(at, axis + 1);

@@ -11,8 +11,8 @@ namespace {
 /// Each takes longer than the visit of a few hundred nodes.
 constexpr std::size_t blocks_at_once = 1;
 
-/// Of a point and its copies on periodic axes the one nearest to `center` [m]: a body at a periodic
-/// end has matter beyond the other.
+/// Returns the copy of a point on periodic axes that is nearest to `center` [m]: a body at a
+/// periodic end has matter beyond the other.
 template <class R>
 Vec3d nearest_copy(const World<R>& world, Vec3d at, const Vec3d& center) {
   for (int a = 0; a < 3; ++a) {

@@ -31,12 +31,12 @@ namespace dreampm {
 template <class R>
 class SurfaceContact {
  public:
-  /// After every change of the grid's block list.
+  /// Must be called after every change of the grid's block list.
   void prepare(const World<R>& world, const Obstacles& obstacles);
   /// Instead, where the velocities of colliders alone have changed. Returns whether that was
   /// enough.
   bool set_velocities(const World<R>& world, const Obstacles& obstacles);
-  /// Whether it may change nodes of this grid block.
+  /// True if contact may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
@@ -46,8 +46,8 @@ class SurfaceContact {
   /// passed over. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
-  /// Before the fields of a visit of a step of `dt` [s]: rigid bodies are unknowns in it. Without
-  /// they move as their twists say.
+  /// Begins a visit of the fields in a step of `dt` [s] in which rigid bodies are unknowns. Without
+  /// it they move as their twists say.
   void begin_bodies(const World<R>& world, double dt) { bodies_.begin(world, dt); }
   void end_bodies() { bodies_ = {}; }
 
@@ -66,10 +66,10 @@ class SurfaceContact {
     R effective_mass = R(0);         ///< impulse per velocity [kg]; 0 where there is too little matter
     R surface_speed = R(0);          ///< along the normal, were its nodes to move with the collider [m/s]
     R approach = R(0);               ///< the speed at which matter may come nearer [m/s]
-    bool limits = false;             ///< whether it limits another one
-    bool acts = false;               ///< whether its impulse may be other than 0 in this call
-    std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps,
-    R extrapolated = R(0);           ///< and extrapolated by the momentum of the descent
+    bool limits = false;             ///< true if it limits another one
+    bool acts = false;               ///< true if its impulse may be other than 0 in this call
+    std::array<R, 2> impulse = {};   ///< along the normal, per area [kg m/s], after even and odd steps
+    R extrapolated = R(0);           ///< `impulse`, extrapolated by the momentum of the descent
   };
   /// A node in the stencil of a point, in the list of the point ...
   struct PointNode {
@@ -83,7 +83,7 @@ class SurfaceContact {
     std::uint16_t rest;  ///< entries of the same point in a row, from this one on
     R w;
   };
-  /// What nodes ask of a point in each call, side by side for them.
+  /// The data of a point that nodes read in each call, side by side for them.
   struct ActingPoint {
     Vec3<R> normal;
     R area;  ///< [dx^2]
@@ -104,15 +104,15 @@ class SurfaceContact {
   struct PointBlock {
     std::size_t block;
     std::size_t begin, end;                        ///< of its points
-    Neighbors around;                              ///< the grid's blocks,
-    std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, for periodic ones,
-    std::array<std::uint32_t, 27> entries{};       ///< and how many nodes of points each of them has
-    bool has_matter = false;                       ///< whether there is matter at any of its points
-    bool acts = false;                             ///< whether any of them acts,
-    bool counts = false;                           ///< or limits another one
-    bool rests = false;                            ///< whether the velocities known of its points are 0
+    Neighbors around;                              ///< the grid's blocks around it
+    std::array<std::uint8_t, 27> same_as{};        ///< the first side with the same block, on periodic axes
+    std::array<std::uint32_t, 27> entries{};       ///< number of nodes of points in each block around
+    bool has_matter = false;                       ///< true if there is matter at any of its points
+    bool acts = false;                             ///< true if any of its points acts
+    bool counts = false;                           ///< true if any of its points acts or limits another one
+    bool rests = false;                            ///< true if the velocities known of its points are 0
     std::uint64_t number = 0;                      ///< Obstacles::number when its points were found
-    bool cleared = false;                          ///< whether its points are as without matter
+    bool cleared = false;                          ///< true if its points are as without matter
     int iterations = ColliderContact::iterations;  ///< of its points in each solve
   };
   /// A block with nodes in stencils of points.
@@ -122,20 +122,20 @@ class SurfaceContact {
     std::size_t live_end = 0;                          ///< of those in live_points_, from `begin`
     std::size_t runs_end = 0;                          ///< of its runs_, which begin at 27 times its number
     int iterations = ColliderContact::iterations;      ///< most of the points that reach it
-    std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each:
-    std::array<Vec3<R>, block_nodes> axis{};           ///< they move along this alone, the collider's normal
+    std::uint64_t sticking = 0;                        ///< nodes inside colliders where matter sticks, a bit each
+    std::array<Vec3<R>, block_nodes> axis{};           ///< the collider's normal, along which alone sticking nodes move
     std::array<std::uint16_t, block_nodes> held_by{};  ///< the entry of Obstacles::at that holds it
     std::array<R, block_nodes> open_fraction{};        ///< the part of a node's kernel that no collider takes
-    // Of its nodes, found anew in each call.
-    bool idle = false;                                  ///< whether there is no matter at all
-    bool has_matter = false;                            ///< whether there is matter at any point of its nodes
-    bool counts = false;                                ///< whether any of those may change it, or matters to others
-    bool moves = false;                                 ///< whether the collider of any of its points does
-    R max_speed2 = R(0);                                ///< the square of their largest speed before contact [m^2/s^2],
-                                                        ///< relative to the colliders
-    std::array<Node<R>, block_nodes> facing;            ///< sums over points: normal times area, and area [dx^2]
-    std::array<R, block_nodes> most;                    ///< area of the largest point [dx^2],
-    std::array<std::uint16_t, block_nodes> collider{};  ///< and its collider
+    // State of its nodes, found anew in each call.
+    bool idle = false;                        ///< true if there is no matter at all
+    bool has_matter = false;                  ///< true if there is matter at any point of its nodes
+    bool counts = false;                      ///< true if any point may change the block, or matters to others
+    bool moves = false;                       ///< true if the collider of any of its points does
+    R max_speed2 = R(0);                      ///< the square of their largest speed before contact [m^2/s^2],
+                                              ///< relative to the colliders
+    std::array<Node<R>, block_nodes> facing;  ///< sums over points: normal times area, and area [dx^2]
+    std::array<R, block_nodes> most;          ///< area of the largest point [dx^2]
+    std::array<std::uint16_t, block_nodes> collider{};  ///< collider of the largest point
     std::array<Vec3<R>, block_nodes> velocity_before;   ///< velocity before contact [m/s]
     std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };
@@ -143,7 +143,8 @@ class SurfaceContact {
   /// Puts the points that there are aside.
   void keep_points(const BlockList& grid);
   void find_points(const World<R>& world, const Obstacles& obstacles);
-  /// Those of one block: from those put aside where it has them still, or found anew.
+  /// Finds the surface points of one block: those kept from before, where there are any, else new
+  /// ones.
   void find_points(const World<R>& world, const Obstacles& obstacles, PointBlock& point_block);
   void take_points(const PointBlock& known, PointBlock& point_block);
   void find_points(const World<R>& world, const std::vector<SurfacePoint>& surface, PointBlock& point_block);
@@ -163,7 +164,8 @@ class SurfaceContact {
   /// Calls body(node block) for those that points of a block may reach.
   template <class Body>
   void for_node_blocks_around(const PointBlock& point_block, const Body& body);
-  /// Beside rigid bodies it takes more of them; elsewhere these would cost as much for nothing.
+  /// Sets the number of iterations: more near rigid bodies; elsewhere these would cost as much for
+  /// nothing.
   void set_iterations();
   NodeBlock& node_block_of(std::uint32_t node) {
     return node_blocks_[static_cast<std::size_t>(node_block_index_[node / block_nodes])];
@@ -192,7 +194,7 @@ class SurfaceContact {
   std::size_t velocities_at(std::size_t& first, std::size_t end, const Nodes<R>& nodes,
                             std::array<std::size_t, 4>& which, std::array<Node<R>, 4>& sums) const;
   void apply_impulses(const NodeBlock& node_block, Nodes<R>& nodes) const;
-  /// Of a point block whose iterations are done.
+  /// Ends the iterations of a point block: sets the impulse before its last one to the last one.
   void rest(const PointBlock& point_block);
   void solve_bodies();
   void apply_friction(const World<R>& world, const NodeBlock& node_block, Nodes<R>& nodes, int last) const;
@@ -229,7 +231,8 @@ class SurfaceContact {
   std::vector<Run> runs_;               ///< by node block, 27 each at most
   std::vector<LiveNode> live_nodes_;    ///< as point_nodes_
   std::vector<LivePoint> live_points_;  ///< as node_points_
-  /// Of points in the last step [kg m/s], with a number beside that is 0: four at once are quick.
+  /// Impulses of points in the last step [kg m/s]; the fourth number is 0: loads of four at once
+  /// are quick.
   std::vector<Node<R>> impulse_changes_;
   /// The velocity of a collider at the place of a node in the stencil of its point [m/s]; empty
   /// while all colliders are at rest.
@@ -244,7 +247,7 @@ class SurfaceContact {
   std::vector<BodyPoint> body_points_;
   std::vector<Vec3<R>> point_node_arm_;  ///< m: of a body's nodes from its center; as point_nodes_, or empty
   BodyCoupling bodies_;
-  bool any_moves_ = false;          ///< whether any collider does
+  bool any_moves_ = false;          ///< true if any collider does
   std::vector<bool> is_free_ball_;  ///< by collider: a rigid ball, which pressure cannot turn
   R max_speed2_ = R(0);             ///< of all node blocks
 };

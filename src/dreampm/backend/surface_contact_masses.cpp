@@ -1,5 +1,5 @@
-// What contact with colliders looks up before its iterations: the masses at points of surfaces, how
-// fast matter may come nearer, and what their impulses weigh at the nodes.
+// The setup of contact with colliders before its iterations: the masses at surface points, the
+// speed at which matter may come nearer, and the effective masses of impulses at the nodes.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -85,7 +85,7 @@ void SurfaceContact<R>::find_acting_points(const World<R>& world, const Obstacle
     impulse_changes_[p] = {};
     acting_[p].mass = R(0);
     point.acts = any;
-    // What a collider holds is inside of it, and has no gap.
+    // Matter that a collider holds is inside of it, and has no gap.
     if (const Collider& collider = world.colliders[point.collider]; gap_at && !collider.holds) {
       const float gap = gap_at->at(surface[p - point_block.begin]);
       point.approach = static_cast<R>(gap) * per_dt;
@@ -114,7 +114,7 @@ void SurfaceContact<R>::find_node_areas(NodeBlock& node_block, Nodes<R>& nodes) 
   for (std::size_t n = 0; n < block_nodes; ++n) {
     node_block.velocity_before[n] = velocity(own[n]);
     Vec3<R>& surface = node_block.surface_velocity[n];
-    // Of those at a node the mean over their area.
+    // The mean over the points at a node, by their areas.
     if (node_block.moves && !(node_block.sticking >> n & 1) && node_block.facing[n].m > R(0))
       surface = surface * (R(1) / node_block.facing[n].m);
     const Vec3<R> relative = node_block.velocity_before[n] - surface;
@@ -191,7 +191,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
     point.live_end = static_cast<std::size_t>(live - live_nodes_.data());
     const R part = (held_weight - R(ColliderContact::held_from)) *
                    R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
-    // Of a limiter that does not act it is asked only whether there is any.
+    // A limiter that does not act only needs to be positive.
     if (part > R(0) && (row > R(0) || !point.acts))
       point.effective_mass = point.acts ? std::min(part, R(1)) / row : part;
     point.surface_speed = dot(surface, point.normal);

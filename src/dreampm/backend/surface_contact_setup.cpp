@@ -1,5 +1,5 @@
-// What contact with colliders knows of their surfaces before a step: its points, their nodes, and
-// the velocities of colliders there.
+// The setup of contact with colliders before a step: surface points, their nodes, and the
+// velocities of colliders there.
 #include <algorithm>
 #include <cmath>
 #include <variant>
@@ -16,8 +16,8 @@ bool moves_any(const World<R>& world) {
   return std::any_of(world.colliders.begin(), world.colliders.end(), [](const Collider& c) { return !c.stands(); });
 }
 
-/// By collider, whether it is a rigid ball that matter may slip along. Pressure goes through its
-/// middle; that of nodes goes through the nodes, which would turn it.
+/// Returns for each collider true if it is a rigid ball that matter may slip along. Pressure goes
+/// through its middle; that of nodes goes through the nodes, which would turn it.
 template <class R>
 std::vector<bool> free_balls(const World<R>& world) {
   std::vector<bool> balls(world.colliders.size());

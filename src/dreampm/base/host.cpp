@@ -36,7 +36,7 @@ class ProcessHost final : public Host {
   bool stop_requested() override { return signal_caught(); }
 
  private:
-  /// As no-color.org asks: what NO_COLOR is set to does not matter, unless it is empty.
+  /// The rule of no-color.org: any value of NO_COLOR counts, unless it is empty.
   static spdlog::color_mode colors() {
     const char* const none = std::getenv("NO_COLOR");
     return none && *none ? spdlog::color_mode::never : spdlog::color_mode::automatic;

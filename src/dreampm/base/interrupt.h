@@ -6,7 +6,7 @@ namespace dreampm {
 void catch_interrupts();
 /// True once a signal came.
 bool signal_caught();
-/// Whether the current host wants work to stop.
+/// True if the current host wants work to stop.
 bool interrupted();
 
 }  // namespace dreampm

@@ -24,7 +24,7 @@ Progress::~Progress() { host_.progress_ends(); }
 void Progress::update(std::size_t done, const std::string& note) {
   const auto now = Clock::now();
   if (!started_) {
-    // What a resumed stage found done must not flatter the pace.
+    // Work that a resumed stage found done must not flatter the pace.
     first_ = done > 0 ? done - 1 : 0;
     started_ = true;
   }

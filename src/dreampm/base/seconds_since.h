@@ -4,7 +4,7 @@
 
 namespace dreampm {
 
-/// By the wall clock [s].
+/// Returns the seconds since `start`, by the wall clock [s].
 inline double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }

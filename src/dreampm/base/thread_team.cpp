@@ -71,7 +71,7 @@ void parallel_region(const void* body, void (*call)(const void*, ThreadTeam&)) {
     return call(body, alone);
   }
   const auto thread = [&](int index) {
-    // Where every thread takes part its slot is the same in every team; of two, the first is the
+    // A thread's slot is the same in every team if all threads take part; of two, the first is the
     // caller.
     if (threads == slots) index = tbb::this_task_arena::current_thread_index();
     ThreadTeam team(state, static_cast<std::size_t>(index), static_cast<std::size_t>(threads));

@@ -14,7 +14,7 @@ namespace dreampm {
 /// not start loops on threads of their own.
 class ThreadTeam {
  public:
-  /// What the threads of a team share.
+  /// The state that the threads of a team share.
   class TeamState;
   ThreadTeam(TeamState& state, std::size_t thread, std::size_t threads)
       : state_(state), parts_(std::min(threads, most_parts)), part_(thread % parts_) {}
@@ -40,13 +40,13 @@ class ThreadTeam {
     wait_until([&] { return all_done(); });
   }
 
-  /// The part of all work that is this thread's: it begins at this share, in [0, 1) ...
+  /// Returns the beginning of this thread's part, as a share of all work in [0, 1).
   double begin() const { return static_cast<double>(part_) / static_cast<double>(parts_); }
-  /// ... and ends at this.
+  /// Returns the end of this thread's part.
   double end() const { return static_cast<double>(part_ + 1) / static_cast<double>(parts_); }
 
-  /// Waits for work that another thread has begun: work that none has begun may never be done. Does
-  /// not return where another thread's body has thrown.
+  /// Waits for work that another thread has begun; one must not wait for other work, as no thread
+  /// may ever begin it. Does not return where another thread's body has thrown.
   template <class Condition>
   void wait_until(const Condition& met) const {
     for (int tries = 0; !met(); ++tries) pause(tries);

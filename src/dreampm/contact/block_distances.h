@@ -21,15 +21,16 @@ class BlockDistances {
   /// The colliders of `other` more.
   void add(const BlockDistances& other);
 
-  /// At the block's node of that index.
+  /// Returns the distance at the block's node of that index.
   double at_node(int n) const { return d_[index(node_offset(n))]; }
-  /// As in Obstacles::clearance. A quadratic spline of the distances themselves would be off by an
-  /// eighth of their Laplacian: by 1/4 r cells on a sphere of r cells.
+  /// Returns the clearance as in Obstacles::clearance. A quadratic spline of the distances
+  /// themselves would be off by an eighth of their Laplacian: by 1/4 r cells on a sphere of r
+  /// cells.
   Node<float> clearance(int n) const;
-  /// Whether the surfaces of these and of others are so far apart, as far as the nodes show it,
-  /// that no face hides another.
+  /// True if these surfaces and the other ones are so far apart, as far as the nodes show it, that
+  /// no face hides another.
   bool is_apart_from(const BlockDistances& other) const;
-  /// Whether the surfaces are so far from the closed walls of the view.
+  /// True if the surfaces are as far from the closed walls of the view.
   bool is_apart_from_walls(const ColliderView& view) const;
 
  private:

@@ -19,7 +19,7 @@ constexpr int flags = 2;   ///< of thin places along a cell
 /// Voxels on either side of a node whose weights are not 0: those of its kernel, and one more.
 constexpr int reach = 3 * voxels / 2 + 1;
 constexpr float half = 0.5f;  ///< values of kernels are 1/2 less the part inside
-/// Of half the width of a cube: half its diagonal.
+/// Half the diagonal of a cube over half its width.
 constexpr double diagonal = 1.7321;
 
 constexpr int side = BrickGrid::side;
@@ -47,7 +47,7 @@ class Voxels {
   Voxels(const ColliderView& view, const Vec3d& size, int fine) : view_(view), fine_(fine) {
     for (int a = 0; a < 3; ++a) high_[a] = static_cast<int>(std::ceil((0.5 * size[a] + 3) * fine / side));
   }
-  /// In the cells of the view.
+  /// Returns a voxel's place in the cells of the view.
   Vec3d at(const Vec3d& voxel) const { return voxel * (1.0 / fine_); }
   Vec3d at(const Vec3i& voxel) const { return at(static_cast<Vec3d>(voxel)); }
   double distance(const Vec3d& voxel) const { return view_.nearest(at(voxel)); }
@@ -114,7 +114,8 @@ void add_up(const BrickGrid& filled, const Vec3i& brick, BrickGrid::Values& valu
     values[n] = half - std::clamp(static_cast<float>(from[n]), 0.0f, 1.0f);
 }
 
-/// Whether it is thin at a voxel or about it: as far as the cells beside the cell that it is in.
+/// True if the body is thin at a voxel or near it: as far as the cells beside the cell that holds
+/// it.
 bool thin_beside(const BrickGrid& thin, const Vec3i& voxel) {
   constexpr int around = 3 * flags / 2;
   for (int i = -around; i <= around; ++i)

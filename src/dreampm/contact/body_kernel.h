@@ -1,6 +1,6 @@
-// What a rigid body is to the kernels of nodes near it, tabulated once in its own frame. As it
-// moves nodes read it from the table: to add the kernel's part inside up anew for each node and
-// step costs many times what the step itself does.
+// The kernel table of a rigid body: the fraction of a node's kernel that the body blocks, tabulated
+// once in its own frame. As the body moves nodes read the table: an integral for each node and step
+// would cost many times the step itself.
 #pragma once
 #include <memory>
 
@@ -10,9 +10,9 @@
 
 namespace dreampm {
 
-/// Of a body that no other solid is near. The kernel of the table has the axes of the body, that of
-/// a node those of the grid: their parts inside a plane differ by 0.006 at most, as the second
-/// moments of both are the same in every direction.
+/// The kernel table of a body that no other solid is near. The kernel of the table has the axes of
+/// the body, that of a node those of the grid: their parts inside a plane differ by 0.006 at most,
+/// as the second moments of both are the same in every direction.
 class BodyKernel {
  public:
   BodyKernel() = default;
@@ -21,9 +21,9 @@ class BodyKernel {
 
   /// The part [0, 1] of the kernel of a node at `p` [m] that lies inside of the body.
   double inside(const Vec3d& p) const;
-  /// Whether a particle near a surface at `p` [m] needs its exact distance (contact/thin_places.h).
+  /// True if a particle near a surface at `p` [m] needs its exact distance (contact/thin_places.h).
   bool is_thin(const Vec3d& p) const;
-  /// Whether there are such places.
+  /// True if the body has such places.
   bool any_thin() const { return any_thin_; }
 
  private:

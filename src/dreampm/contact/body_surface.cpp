@@ -37,7 +37,7 @@ void keep_divergence_theorem(std::vector<SurfacePatch>& patches, const Vec3d& mi
     missing -= part * p.area;
     products += part * part.transpose() * p.area;
   }
-  // Of a box some sums are 0 whatever the areas.
+  // A rank-revealing solver: some sums of a box are 0 whatever the areas.
   Eigen::CompleteOrthogonalDecomposition<Eigen::Matrix<double, sums, sums>> solve;
   solve.setThreshold(1e-9);
   const Sums multipliers = solve.compute(products).solve(missing);

@@ -48,7 +48,7 @@ std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collid
   for (int a = 0; a < 3; ++a) {
     if (!world.periodic[static_cast<std::size_t>(a)] || !is_finite(bounds.min) || !is_finite(bounds.max)) continue;
     const double length = (world.high[a] - world.low[a]) * world.dx;
-    // What moves may have gone round.
+    // Colliders that move may have gone round a periodic axis.
     if (collider.moves())
       for (Vec3d& s : shifts) s[a] = -length * std::floor((bounds.center()[a] - world.domain().min[a]) / length);
     for (std::size_t i = 0, n = shifts.size(); i < n; ++i)
@@ -179,7 +179,7 @@ void ColliderView::distances_at(std::uint16_t collider, const PointColumns& mete
       own[0][i] = p.x, own[1][i] = p.y, own[2][i] = p.z;
     }
   };
-  // As PlacedCollider::in_frame, which asks anew for each.
+  // A stored transform: PlacedCollider::in_frame asks anew for each point.
   if (!c.moves)
     place([](const Vec3d& p) { return p; });
   else if (!c.turned)
@@ -357,8 +357,8 @@ ColliderDistance ColliderView::depth(const Vec3d& at, const Vec3d& hidden) const
     if (const double way = dot(there - at, all_ways[k]); way < found) found = way, exit = there;
   }
   if (found >= depth_reach) return {-depth_reach, hidden};
-  // Of the plane at the exit: a way rarely leaves along the normal. Differences over more than a
-  // slit do not see it.
+  // The normal of the plane at the exit, as a path rarely leaves along the normal. Differences over
+  // more than a slit do not see the plane.
   Vec3d n;
   for (int a = 0; a < 3; ++a) {
     Vec3d h;

@@ -20,7 +20,7 @@ struct ColliderDistance {
   Vec3d normal;
 };
 
-/// Where copies of a collider lie on periodic axes, as shifts [m]; endless ones have none.
+/// Returns the shifts [m] of a collider's copies on periodic axes; endless colliders have none.
 template <class R>
 std::vector<Vec3d> periodic_copies(const World<R>& world, const Collider& collider);
 
@@ -32,7 +32,7 @@ struct PlacedCollider {
   bool moves = collider.moves();
   bool turned = !(collider.surface_pose.rotation == Quaternion{});
 
-  /// As Collider::distance [m], to the bit.
+  /// Returns Collider::distance [m], to the same bits.
   double distance(const Vec3d& p) const { return collider.shape->distance(in_frame(p)); }
   /// The place in the frame of its shape.
   Vec3d in_frame(const Vec3d& p) const {
@@ -47,11 +47,12 @@ class ColliderView {
  public:
   /// Faces that are less apart than this [cells] leave no room for matter between them.
   static constexpr double slit = 0.15;
-  /// What lies this far before a face [cells] shows whether matter can come there. Meshes end on a
-  /// wall with rounded edges, as far as their voxels go.
+  /// Distance before a face [cells] at which it is tested whether matter can come there. Meshes
+  /// that end on a wall have edges rounded over as far as their voxels go.
   static constexpr double before_face = 0.4;
 
-  /// What to see: colliders that stand still, those too whose motion is given, rigid bodies too.
+  /// The colliders that a view shows: those that stand still, also those in a given motion, or also
+  /// rigid bodies.
   enum class See { fixed, driven, all };
 
   /// `colliders`: all of the world, which must outlive the view.
@@ -76,7 +77,7 @@ class ColliderView {
 
   /// Numbers of the colliders within `reach` cells of the block's middle, in their order.
   std::vector<std::uint16_t> within(double reach) const;
-  /// Whether that one is, of those that are seen.
+  /// True if that collider, one of those shown, is within reach.
   bool is_within(std::uint16_t collider, double reach) const { return distance(collider, middle) <= reach; }
 
   /// The distance [cells] from that collider alone, with all of its faces.
@@ -95,13 +96,13 @@ class ColliderView {
   }
   bool holds_matter(std::uint16_t collider) const { return (*colliders_)[collider].collider.holds; }
   bool is_rigid_body(std::uint16_t collider) const { return (*colliders_)[collider].collider.rigid; }
-  /// Its outward normal there.
+  /// Returns its outward normal there.
   Vec3d normal(std::uint16_t collider, const Vec3d& at) const;
   /// The velocity of its matter there [m/s].
   Vec3d velocity(std::uint16_t collider, const Vec3d& at) const;
   /// The way there from the center of its twist, before the walls [m].
   Vec3d arm(std::uint16_t collider, const Vec3d& at) const;
-  /// Its spin before the walls [rad/s].
+  /// Returns its spin before the walls [rad/s].
   const Vec3d& spin(std::uint16_t collider) const { return (*colliders_)[collider].collider.twist.spin; }
 
   /// The distance from the faces of that collider that matter can touch: inside beside a hidden
@@ -112,11 +113,11 @@ class ColliderView {
   /// The same where its distance is known.
   ColliderDistance exposed(std::uint16_t collider, const Vec3d& at, double distance) const;
 
-  /// That from the nearest of all that put matter back out of them, with its normal outside, too;
-  /// {reach, 0} where it is more than `reach`.
+  /// Returns the distance from the nearest collider that puts matter back out of it, with its
+  /// normal, outside of it too; {reach, 0} where it is more than `reach`.
   ColliderDistance nearest_exposed(const Vec3d& at, double reach) const;
 
-  /// Whether matter can lie before the face of a collider at `at` that faces `normal`.
+  /// True if matter can lie before the face of a collider at `at` that faces `normal`.
   bool is_exposed(const Vec3d& at, const Vec3d& normal) const { return nearest(at + normal * before_face) > 1e-6; }
   /// The part of a cube around `at` that colliders fill: 1/2 where a surface goes through its
   /// middle. `width` in cells.
@@ -128,7 +129,7 @@ class ColliderView {
   /// and which that is.
   std::uint16_t nearest_collider(const Vec3d& at) const { return nearest_of(near_, at); }
 
-  /// Whether matter may come to a place: not on walls or behind.
+  /// True if matter may come to a place: one that is neither on a wall nor behind it.
   bool within_domain(const Vec3d& at) const;
 
   /// The distance from the nearest closed wall [cells], negative behind it.
@@ -136,8 +137,8 @@ class ColliderView {
 
   /// A rounding error outside an aligned face is inside.
   static bool inside(double distance) { return distance <= 1e-6; }
-  /// Where the line between two places on either side of a surface meets it; `begin`, `end`:
-  /// distances there from the surface that lies `out` of the solid.
+  /// Returns the point where the line between two places on either side of a surface meets it;
+  /// `begin`, `end`: distances there from the surface that lies `out` of the solid.
   Vec3d crossing(const Vec3d& from, const Vec3d& to, double begin, double end, double out = 0) const;
 
  private:
@@ -170,7 +171,8 @@ class ColliderView {
   const std::vector<PlacedCollider>* colliders_;
   See see_;
   std::vector<std::uint16_t> near_, near_closed_;  ///< all, and those that do not hold matter inside
-  /// Of near_, from the middle of the block [cells]; empty where they may have changed.
+  /// Distances of the near_ colliders from the middle of the block [cells]; empty where they may
+  /// have changed.
   std::vector<double> middle_distances_;
   std::size_t middle_first_ = 0;  ///< of these the first of the least
 };

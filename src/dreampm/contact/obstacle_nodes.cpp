@@ -14,7 +14,7 @@
 namespace dreampm {
 namespace {
 
-/// Whether the solid about a node is a half-space, as far as most of its kernel goes.
+/// True if the solid around a node is a half-space within most of the node's kernel.
 bool is_plane(const ColliderView& view, const Vec3d& node) {
   constexpr double around = 0.8, off = 0.05;
   std::array<Vec3d, 15> steps{};  // none, to either side along each axis, to the corners

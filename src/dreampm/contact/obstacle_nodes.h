@@ -1,4 +1,4 @@
-// What colliders are to the nodes of one block: how far, and how much of each kernel they take.
+// Nodes near colliders: their distances, and the parts of their kernels that each collider blocks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,13 +12,13 @@ namespace dreampm {
 
 struct ObstacleNode {
   std::uint8_t node;       ///< index within the block
-  bool inside;             ///< the node's distance is <= 0,
-  bool deep;               ///< and even beyond `deep_nodes`
+  bool inside;             ///< true if the node's distance is <= 0
+  bool deep;               ///< true if the node is deeper inside than `deep_nodes`
   std::uint16_t collider;  ///< index within World::colliders
-  float blocked;           ///< fraction of the node's kernel inside the collider, a plane; of several their shares
-  float taken;             ///< and as the whole solid lies, at edges too: what a density is read with
-  Vec3d normal;            ///< outward, of nodes inside
-  Vec3d velocity{};        ///< of the collider there [m/s], of nodes inside one that moves
+  float blocked;           ///< fraction of the node's kernel inside the collider, as a plane; for several, their shares
+  float taken;             ///< the same for the whole solid, exact at edges too: densities are read with it
+  Vec3d normal;            ///< outward; of nodes inside
+  Vec3d velocity{};        ///< the collider's there [m/s]; of nodes inside one that moves
 };
 
 /// The part of a quadratic B-spline beyond distance d on its positive side: how much of a node's
@@ -32,10 +32,10 @@ enum class Cubes { fixed = 6, moving = 3 };
 /// Adds the nodes of the block whose kernels reach into that collider.
 void add_nodes(ExposedNodes& exposed, std::uint16_t collider, std::vector<ObstacleNode>& nodes);
 
-/// Where several colliders take of a node's kernel, what they take together is no sum. Of two faces
+/// Shares a node's kernel among several colliders, whose parts do not simply add up. Of two faces
 /// that meet at a right angle the second takes its part of what the first one left; one that
-/// continues the first takes nothing more. So they are as parts of `blocked`; at edges, and in
-/// layers on a wall of the box, those of `taken` are scaled to what the solid as a whole takes.
+/// continues the first takes nothing more. These are the shares of `blocked`; at edges, and in
+/// layers on a wall of the box, those of `taken` are scaled to the part of the solid as a whole.
 void share_kernels(const ColliderView& view, Cubes cubes, std::vector<ObstacleNode>& nodes);
 
 /// Adds the nodes of a rigid body to `nodes`, those of the other colliders with their shares;

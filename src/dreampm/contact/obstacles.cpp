@@ -22,7 +22,7 @@ Vec3i first_block(const World<R>& world) {
   return {world.low.x >> 2, world.low.y >> 2, world.low.z >> 2};
 }
 
-/// Whether less than a cell may lie between a collider and a periodic copy of it.
+/// True if less than a cell may lie between a collider and a periodic copy of it.
 bool may_meet_copy(const PlacedCollider& c, double dx) {
   const Vec3d room = c.collider.bounds().size() + Vec3d{dx, dx, dx};
   return std::any_of(c.shifts.begin() + 1, c.shifts.end(), [&](const Vec3d& shift) {
@@ -220,7 +220,7 @@ void Obstacles::place(const World<R>& world) {
                                  return a.collider.moves() == b.moves() && a.collider.rigid == b.rigid;
                                });
   if (!same) {
-    // Of bodies that were there before, the tables take longer than all else.
+    // Tables of bodies that were there before are kept: they cost more than all else.
     std::vector<std::shared_ptr<const Body>> bodies(now.size());
     for (std::size_t c = 0; c < now.size(); ++c)
       for (std::size_t old = 0; old < placed_.size() && !bodies[c]; ++old)

@@ -1,6 +1,6 @@
-// What colliders mean to the matter in a block: where their surfaces are, how far its nodes are
-// from them, and how much of a node's kernel they take. Worked out once a block, when matter first
-// comes near, and near colliders that move whenever these have moved.
+// Obstacles: the colliders near each block of the grid, with points of their surfaces, the
+// distances of nodes from them, and the part of each node's kernel that they block. Found once a
+// block, when matter first comes near, and again near colliders that moved.
 #pragma once
 #include <array>
 #include <memory>
@@ -27,13 +27,13 @@ class Obstacles {
   /// the grid, and for longer lists than ever.
   template <class R>
   void prepare(const World<R>& world);
-  /// As new, but for the numbers that it has given away.
+  /// Resets to the initial state, except for the numbers already given to entries.
   void forget() {
     const std::uint64_t given = numbers_;
     *this = {};
     numbers_ = given;
   }
-  /// Whether the last `prepare` found anything but velocities changed.
+  /// True if the last `prepare` found a change of anything but velocities.
   bool changed() const { return changed_; }
   /// The nodes of that grid block that colliders touch; empty for most.
   const std::vector<ObstacleNode>& at(std::size_t grid_block) const {
@@ -47,10 +47,10 @@ class Obstacles {
   std::uint64_t number(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->number : 0;
   }
-  /// Whether a collider is near that grid block: within reach of particles that reach its nodes.
+  /// True if a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
-  /// At the nodes of the grid the distance from the nearest collider [cells], negative inside, as
-  /// the last number, after its gradient; empty without colliders.
+  /// Returns for the nodes of the grid the distance from the nearest collider [cells], negative
+  /// inside, as the last number, after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }
   /// The colliders around a block, and its cells in which particles need their exact distance from
   /// them, a bit each.
@@ -62,7 +62,7 @@ class Obstacles {
   const Thin* thin(std::size_t grid_block) const {
     return by_block_[grid_block] ? by_block_[grid_block]->thin.get() : nullptr;
   }
-  /// Whether there are such blocks.
+  /// True if there are such blocks.
   bool any_thin() const { return any_thin_; }
   bool any() const { return any_; }
 
@@ -72,7 +72,7 @@ class Obstacles {
     std::vector<SurfacePoint> points;
     std::array<Node<float>, block_nodes> clearance;
     std::unique_ptr<const Thin> thin;  ///< see Obstacles::thin
-    /// Of all but rigid bodies, where there are some.
+    /// Distances from all colliders but rigid bodies, where there are some.
     std::unique_ptr<const BlockDistances> distances;
     std::vector<std::uint16_t> moving;  ///< colliders of the cache that move, within reach
     std::uint64_t number = 0;           ///< its own, from 1
@@ -83,22 +83,24 @@ class Obstacles {
   /// Takes over where the colliders stand, and forgets what is no longer true.
   template <class R>
   void place(const World<R>& world);
-  /// Whether those that stand are the same, by the same numbers, so that what is known of them
-  /// alone stays true.
+  /// True if the fixed colliders are the same, by the same numbers, so that the entries for them
+  /// alone stay valid.
   bool still_fixed(const std::vector<Collider>& now) const;
   template <class R>
   void find_fixed(const World<R>& world);
-  /// Those that move, of the driven ones or of the rigid bodies, in place of what `by_block_` has.
+  /// Replaces entries of `by_block_` by those with the colliders that move: the driven ones or the
+  /// rigid bodies.
   template <class R>
   void find_moving(const World<R>& world, ColliderView::See see, Cache& cache);
   /// Fills in what a cache lacks, the `fresh_` blocks of the grid: `find_one(grid_block)`.
   template <class R, class Find>
   void look_up(const World<R>& world, Cache& cache, std::vector<const Near*>& by_block, const Find& find_one);
-  /// Those within reach of a block's nodes; `bounds`: of all colliders, by number.
+  /// Returns the moving colliders within reach of a block's nodes; `bounds`: of all colliders, by
+  /// number.
   template <class R>
   std::vector<std::uint16_t> near_moving(const World<R>& world, const Vec3i& block, ColliderView::See see,
                                          const std::vector<Box3d>& bounds) const;
-  /// Whether what the cache knows of a block is still so, `moving` being near and `base` beneath
+  /// True if the cache's entry for a block is still valid, with `moving` near it and `base` beneath
   /// it.
   bool is_current(const Near& near, const std::vector<std::uint16_t>& moving, const Near* base) const;
   /// Brings the velocities of colliders up to date, where some are near that move.
@@ -106,7 +108,7 @@ class Obstacles {
   void set_velocities(const World<R>& world) const;
   template <class R>
   void set_velocities(const World<R>& world, const Vec3i& block, Near& near) const;
-  /// Whether all surfaces are where they were, and the grid has the blocks that it had.
+  /// True if no surface moved, and the grid has the same blocks.
   template <class R>
   bool is_as_before(const World<R>& world) const;
   /// Moves the points of rigid bodies to where these stand.
@@ -124,7 +126,7 @@ class Obstacles {
 
   std::vector<PlacedCollider> placed_;  ///< all of the world
   bool any_driven_ = false;
-  /// What is known of a rigid body in its own frame.
+  /// Tables of a rigid body in its own frame.
   struct Body {
     std::vector<BodyPoint> points;
     BodyKernel kernel;

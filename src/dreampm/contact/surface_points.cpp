@@ -8,9 +8,9 @@
 namespace dreampm {
 namespace {
 
-/// As SurfacePoint::from_edge: the mean of the ways on which the surface falls off, turned round.
-/// Ways that face each other cancel, so that neither the points of a sphere nor those in the middle
-/// of a narrow face have any.
+/// Returns SurfacePoint::from_edge: the mean of the directions in which the surface falls off,
+/// reversed. Opposite directions cancel, so that neither the points of a sphere nor those in the
+/// middle of a narrow face have any.
 Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   Vec3d sum;
   for (const Vec3d& way : ways_along(normal))
@@ -19,7 +19,7 @@ Vec3d away_from_edge(const ColliderView& view, const Vec3d& at, const Vec3d& nor
   return size > 0.5 ? sum * (1 / size) : Vec3d{};
 }
 
-/// Where a line meets a surface, and how much of the surface it stands for there.
+/// A crossing of a line and a surface, with the area of the surface that it stands for.
 struct Crossing {
   std::uint16_t collider;
   Vec3d at, normal;
@@ -74,8 +74,8 @@ std::array<bool, 3> towards_corner(const ColliderView& view, const Vec3d& at, co
   return axes;
 }
 
-/// Where the lines along the axes meet surfaces that matter can touch, in the cell that begins at
-/// `first`.
+/// Returns the crossings of the lines along the axes with surfaces that matter can touch, in the
+/// cell that begins at `first`.
 std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
   constexpr int lines_a_cell = ColliderContact::lines_a_cell, lines = lines_a_cell * lines_a_cell,
                 places_a_line = lines_a_cell + 1;
@@ -118,10 +118,11 @@ std::vector<Crossing> crossings(const ColliderView& view, const Vec3d& first) {
 
 /// Cells from the middle of a block within which surfaces cut its cells: half its diagonal.
 constexpr double block_reach_of_surfaces = 3.5;
-/// How far a surface may be from the middle of a cell that it cuts [cells]: half the diagonal.
+/// Bound of the distance from the middle of a cell to a surface that cuts it [cells]: half the
+/// diagonal.
 constexpr double half_diagonal = 0.87;
 
-/// Whether a surface may cut one of the eighths of a cell.
+/// True if a surface may cut one of the eighths of a cell.
 bool is_cut(const ColliderView& view, const Vec3d& middle) {
   constexpr double aside = 0.25, reach = 0.45;  // a little more than half the diagonal of an eighth
   std::array<Vec3d, 8> middles;

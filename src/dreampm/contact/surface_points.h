@@ -1,4 +1,4 @@
-// Where the surfaces of colliders are in a block of the grid: the points at which contact acts.
+// Surface points of colliders in a block of the grid: the points at which contact acts.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,10 +22,10 @@ struct SurfacePoint {
   std::uint32_t deep;     ///< deep nodes of its stencil, a bit each, z fastest: they take no part in its contact
   std::array<std::int8_t, 3> first;  ///< node of its stencil
   std::uint16_t collider;
-  // Of colliders that move, set where they move to (Obstacles::set_velocities); 0 of others:
-  Vec3<float> velocity{};  ///< of the surface [m/s],
-  Vec3<float> spin{};      ///< the spin of its collider [rad/s],
-  Vec3d arm{};             ///< and the way from the center of its twist to here [m]: moments are exact with it
+  // Velocities, set for colliders that move (Obstacles::set_velocities), 0 for others:
+  Vec3<float> velocity{};  ///< of the surface [m/s]
+  Vec3<float> spin{};      ///< of the collider [rad/s]
+  Vec3d arm{};  ///< vector from the center of the collider's twist to the point [m]: moments are exact with it
 };
 
 /// Eight ways of a cell along a surface with that normal.

@@ -12,7 +12,7 @@
 namespace dreampm {
 namespace {
 
-/// Whether the collider ends again less than `thickness` behind a place on its surface.
+/// True if the collider ends again less than `thickness` behind a place on its surface.
 bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, double thickness) {
   constexpr int steps = 8;
   // The deepest place shows how far about it the solid goes: mostly to the surface.
@@ -23,7 +23,7 @@ bool is_thin(const ColliderView& view, const Vec3d& at, const Vec3d& normal, dou
   return false;
 }
 
-/// Whether a surface is no plane within a cell of a place on it: at edges, in corners, where it is
+/// True if a surface is not plane within a cell of a place on it: at edges, in corners, where it is
 /// round and narrow.
 bool is_bent(const ColliderView& view, const Vec3d& at, const Vec3d& normal) {
   const std::array<Vec3d, 8> ways = ways_along(normal);

@@ -1,5 +1,5 @@
-// Where splines between nodes do not resolve a solid: walls and edges of about a cell. Particles
-// there need their exact distance.
+// Thin places: walls and edges of about a cell, which splines between nodes do not resolve.
+// Particles there need their exact distance.
 #pragma once
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace dreampm {
 /// particle is put back from half a cell before a surface at most, as far as it moves in a step.
 constexpr double thin_places_reach = 0.5 + 0.87;
 
-/// Whether splines between nodes do not resolve the solid behind the surface that is nearest to a
+/// True if splines between nodes do not resolve the solid behind the surface that is nearest to a
 /// free place, `distance` away.
 bool needs_distance(const ColliderView& view, const Vec3d& at, double distance);
 

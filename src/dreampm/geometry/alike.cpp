@@ -14,7 +14,7 @@ constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
 /// One side of a triangle, from its lower to its higher vertex.
 struct Side {
   std::uint32_t low, high, face;
-  bool forward;  ///< whether the triangle goes from low to high
+  bool forward;  ///< true if the triangle goes from low to high
   std::uint8_t corner;
 };
 
@@ -97,7 +97,7 @@ Box3d bounds_of(const Model& model, const Part& part) {
   return box;
 }
 
-/// Whether all must be turned once more, besides those that differ from the first.
+/// True if all parts must be turned once more, besides those that differ from the first.
 bool turn_all(const Model& model, const Part& part, const std::vector<std::uint8_t>& turn, const Box3d& box,
               bool enclosed) {
   double six_volumes = 0, kept = 0;  // kept: twice the area that stays as it is, less that which is turned

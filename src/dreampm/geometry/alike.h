@@ -7,7 +7,7 @@
 
 namespace dreampm {
 
-/// What was found of the directions of a mesh's faces. Vertices at one place count as one.
+/// The result of a look at the directions of a mesh's faces. Vertices at one place count as one.
 struct Alike {
   std::size_t parts = 0;          ///< groups of faces that hang together by edges of two faces
   std::size_t turned = 0;         ///< faces that were turned

@@ -54,7 +54,7 @@ class Boolean final : public Region {
       for (std::size_t n = 0; n < some.count; ++n) to[begin + n] = first_ * all[n];
     }
   }
-  /// That of the part whose surface is felt at p.
+  /// Returns the normal of the part whose surface is nearest at p.
   Vec3d normal(const Vec3d& p) const override { return normal_to(parts_.size(), p) * first_; }
   Box3d bounds() const override {
     Box3d box = parts_[0]->bounds();
@@ -73,13 +73,13 @@ class Boolean final : public Region {
   double side(std::size_t i, const Vec3d& p) const { return (i == 0 ? first_ : other_) * parts_[i]->distance(p); }
   Vec3d side_normal(std::size_t i, const Vec3d& p) const { return parts_[i]->normal(p) * (i == 0 ? first_ : other_); }
 
-  /// Of the intersection of the first `i` sides, which has the distance `d`, and of side `i`, which
-  /// has `e`.
+  /// Returns the distance from the intersection of the first `i` sides, which has the distance `d`,
+  /// and of side `i`, which has `e`.
   double joined(std::size_t i, const Vec3d& p, double d, double e) const {
     const auto open = std::abs(d + e) <= same_ ? past_sheet(i, p, d) : std::nullopt;
     return open ? open->distance : std::max(d, e);
   }
-  /// Of the intersection of the first `count` sides.
+  /// Returns the distance from the intersection of the first `count` sides.
   double distance_to(std::size_t count, const Vec3d& p) const {
     double d = side(0, p);
     for (std::size_t i = 1; i < count; ++i) d = joined(i, p, d, side(i, p));
@@ -99,10 +99,10 @@ class Boolean final : public Region {
     return sheet ? sheet->normal : side_normal(felt, p);
   }
 
-  /// Where the first `i` sides and side `i` end at one face, and lie on either side of it, their
-  /// intersection is a sheet without thickness there, and no surface. What is felt is then the rest
-  /// of it, around the place of the sheet that is next to p. `d`: the distance from the first `i`.
-  /// Nothing where there is no such sheet.
+  /// Returns the distance past a sheet; nothing where there is no such sheet. Where the first `i`
+  /// sides and side `i` end at one face, and lie on either side of it, their intersection is a
+  /// sheet without thickness there, and no surface. The distance is then that from the rest of it,
+  /// around the place of the sheet that is next to p. `d`: the distance from the first `i`.
   std::optional<Felt> past_sheet(std::size_t i, const Vec3d& p, double d) const {
     const Vec3d n = normal_to(i, p);
     constexpr double opposite = -0.99;
@@ -122,7 +122,7 @@ class Boolean final : public Region {
     return Felt{same_side ? at.distance : aside(at), length2(slope) > 0 ? normalized(slope) : n};
   }
 
-  /// How far the edge of a sheet is, as the side `distance` has it: its distance where the way from
+  /// Returns the edge of a sheet, as the side `distance` has it: its distance where the way from
   /// the sheet along `along` first comes nearer to another face of it; and the way to that place.
   template <class Distance>
   Edge edge(const Vec3d& foot, const Vec3d& along, const Distance& distance) const {

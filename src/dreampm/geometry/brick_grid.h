@@ -71,11 +71,12 @@ class BrickGrid {
   /// The same at many places, to the same bits: place(axis, number) [voxels].
   template <class InVoxels>
   void samples(std::size_t count, const InVoxels& place, double* to) const;
-  /// Where the values grow at p [voxels], of length 1; up where they are the same all about.
+  /// Returns the direction in which values grow at p [voxels], of length 1; up where they are the
+  /// same all around.
   Vec3d direction(const Vec3d& p) const;
 
  private:
-  /// In the cell that begins at voxel `i`, at `f` of its sides.
+  /// Returns the value in the cell that begins at voxel `i`, at `f` of its sides.
   double sample(const Vec3i& i, const Vec3d& f) const;
 
   Vec3i low_{}, count_{};

@@ -10,13 +10,13 @@ namespace dreampm {
 class ChangingRegion {
  public:
   virtual ~ChangingRegion() = default;
-  /// What it is at a time [s].
+  /// Returns the region at a time [s].
   virtual std::shared_ptr<const Region> at(double time) const = 0;
   /// The velocity [m/s] of its surface nearest to `p` [m] at a time [s].
   virtual Vec3d velocity(const Vec3d& p, double time) const = 0;
   /// The largest speed [m/s] of a point of its surface between two times [s].
   virtual double fastest(double from, double to) const = 0;
-  /// How far a point of its surface moves at most between two times [m].
+  /// Returns a bound of the distance that a point of its surface moves between two times [m].
   virtual double farthest(double from, double to) const = 0;
 };
 

@@ -32,7 +32,7 @@ class Grown final : public Region {
   double by_;
 };
 
-/// What is solid, with what it is about.
+/// The solid of a container, with the space around it.
 class Container final : public Region {
  public:
   Container(Made solid, PlacedHollow hollow) : solid_(std::move(solid)), hollow_(std::move(hollow)) {}
@@ -46,10 +46,10 @@ class Container final : public Region {
   PlacedHollow hollow_;
 };
 
-/// How far the region reaches along an axis [m], looking towards `sign`. Boxes are halved, those
-/// that may reach farthest first. A distance is at most the true one, so that the ball about a
-/// point inside is inside, and a box around a point that is farther outside than its corners holds
-/// nothing. -1e30 where nothing is found.
+/// Returns the reach of the region along an axis [m], looking towards `sign`. Boxes are halved,
+/// those that may reach farthest first. A distance is at most the true one, so that the ball about
+/// a point inside is inside, and a box around a point that is farther outside than its corners
+/// holds nothing. -1e30 where nothing is found.
 double reach_along(const Region& region, const Box3d& bounds, int axis, double sign, double tolerance) {
   struct Piece {
     double most;
@@ -113,7 +113,7 @@ double section(const Region& region, const Box3d& box, double voxel) {
                step = std::clamp(0.5 * voxel, std::max(size.x, size.z) / 2000, std::max(size.x, size.z) / 200);
   const auto nx = static_cast<int>(std::ceil(size.x / step)), nz = static_cast<int>(std::ceil(size.z / step));
   std::size_t inside = 0;
-  // What ends flush with the plane is open there.
+  // Parts that end flush with the plane are open there.
   const double flush = 1e-3 * step;
   for (int k = 0; k < nz; ++k)
     for (int i = 0; i < nx; ++i) {

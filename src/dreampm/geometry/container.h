@@ -7,7 +7,8 @@
 
 namespace dreampm {
 
-/// By default a container is cut off this part of the height of its hollow below the highest point.
+/// The default part of the height of its hollow, below the highest point, that is cut off a
+/// container.
 inline constexpr double default_cut = 0.05;
 
 /// A container before it is placed: its hollow lies as its own shape says, turned about the middle

@@ -59,7 +59,7 @@ class Ring {
     else
       ears_.erase(i);
   }
-  /// Whether the triangle a b c can be cut off: it turns to the left, and no other corner lies in
+  /// True if the triangle a b c can be cut off: it turns to the left, and no other corner lies in
   /// it.
   bool is_ear(std::size_t a, std::size_t b, std::size_t c) const {
     if (!turns_left(b)) return false;

@@ -185,7 +185,7 @@ class HalfCells {
     }
     return level;
   }
-  /// Those that liquid comes to by the mouth.
+  /// Returns the cells that liquid reaches through the mouth.
   Marks reached() const {
     std::vector<std::uint8_t> starts(share_.size());  // wholly before the mouth
     for (std::size_t i = 0; i < share_.size(); ++i)
@@ -241,7 +241,7 @@ Box<float> liquid_in(const HollowCells& hollow, std::span<const Vec3d> points, d
   return liquid;
 }
 
-/// Whether a cell is filled; one that a wall cuts goes by those around it too.
+/// True if a cell is filled; a cell that a wall cuts goes by those around it too.
 bool is_filled(const HollowCells& hollow, const Box<float>& liquid, std::size_t cell) {
   constexpr double whole = 0.9;
   double has = liquid[cell], holds = hollow.capacity[cell];

@@ -1,4 +1,4 @@
-// What a file of geometry holds, as plain arrays: a mesh, or a cloud of points.
+// The content of a file of geometry, as plain arrays: a mesh, or a cloud of points.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -24,11 +24,11 @@ struct Model {
 
 Model model_of(const TriMesh& mesh);
 
-/// Of the vertices that faces name; of all where there are no faces.
+/// Returns the bounds of the vertices that faces name; of all vertices where there are no faces.
 Box3d bounds_of(const Model& model);
 
-/// What a closed mesh encloses, where it does so once; below 0 if its faces look inward. And the
-/// sum of all faces.
+/// Returns the volume that a closed mesh encloses, where it does so once; below 0 if its faces look
+/// inward. Otherwise the signed sum over all faces.
 double enclosed_volume(const Model& model);
 double surface_area(const Model& model);
 
@@ -39,7 +39,7 @@ TriMesh about(const Model& model, const Vec3d& origin);
 /// holds.
 void require_finite(const Model& model, const std::string& name);
 
-/// For every vertex the first one at its place; all are finite.
+/// Returns for every vertex the first one at its place; all are finite.
 std::vector<std::uint32_t> by_place(const std::vector<Vec3d>& vertices);
 
 /// One vertex a place, which all faces there name. Of vertices without columns.

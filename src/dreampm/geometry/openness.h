@@ -1,4 +1,4 @@
-// Whether a mesh is closed, and how wide its holes are.
+// Openness of a mesh: whether it is closed, and how wide its holes are.
 #pragma once
 #include <cstddef>
 

@@ -58,7 +58,7 @@ class Board {
     return (static_cast<std::size_t>(c.x + reach) * width_ + static_cast<std::size_t>(c.y + reach)) * width_ +
            static_cast<std::size_t>(c.z + reach);
   }
-  /// With its images beyond the faces.
+  /// Adds a point with its images beyond the faces.
   void put(const Vec3i& c, const Vec3d& p) {
     const auto number = static_cast<std::int32_t>(points_.size());
     points_.push_back(p);
@@ -136,7 +136,7 @@ class Board {
         for (unsigned part = 0; part < 8; ++part)
           by_this |= static_cast<unsigned>(far2[0][part >> 2] + far2[1][part >> 1 & 1] + far2[2][part & 1] < 1) << part;
         covered |= by_this;
-        // What covers a cell mostly covers the next one too.
+        // A point that covers a cell mostly covers the next one too.
         if (by_this != 0) std::swap(near[n], near[n / 2]);
       }
       for (int part = 0; part < 8; ++part)

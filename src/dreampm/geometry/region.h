@@ -27,7 +27,7 @@ class Region {
   /// Signed distance [m], negative inside. Exact for convex primitives; a bound of the right sign
   /// for CSG; for a mesh exact within its narrow band and clamped to the band's width beyond.
   virtual double distance(const Vec3d& p) const = 0;
-  /// At many points, to the same bits.
+  /// Computes the distances at many points, to the same bits.
   virtual void distances(const PointColumns& points, double* to) const;
   /// Outward unit normal (gradient of distance); by central differences unless overridden.
   virtual Vec3d normal(const Vec3d& p) const;

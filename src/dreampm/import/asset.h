@@ -12,9 +12,10 @@ namespace dreampm {
 
 /// "asset:..." ?
 bool is_asset(std::string_view name);
-/// Where fetched models lie: $DREAMPM_CACHE, else $XDG_CACHE_HOME/dreampm, else ~/.cache/dreampm.
+/// Returns the folder of fetched models: $DREAMPM_CACHE, else $XDG_CACHE_HOME/dreampm, else
+/// ~/.cache/dreampm.
 std::filesystem::path asset_folder();
-/// Whether the file of a fetched model lies there; its content is not looked at.
+/// True if the file of a fetched model is there; its content is not read.
 bool is_fetched(std::string_view name);
 
 /// A (2,3) torus knot as a closed tube of round section, made by code; about 3 units across, axis

@@ -8,8 +8,8 @@ namespace dreampm {
 
 struct Asset {
   std::string_view name;
-  /// Of one that tools/fetch_dragon fetches; empty: made by code. The sum is of the unpacked text,
-  /// which is the same whoever packed it.
+  /// The file that tools/fetch_dragon fetches; empty: made by code. The sum is of the unpacked
+  /// text, which is the same whoever packed it.
   std::string_view file = {}, sha256 = {};
 };
 

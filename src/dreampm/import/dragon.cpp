@@ -29,7 +29,7 @@ double to_limb(const Vec3d& p, const Joint& a, const Joint& b) {
   return length(off - along * t) - (a.radius + (b.radius - a.radius) * t);
 }
 
-/// To a triangle with rounded edges.
+/// Returns the distance to a triangle with rounded edges.
 double to_plate(const Vec3d& p, const std::array<Vec3d, 3>& v, double half) {
   const Vec3d normal = normalized(cross(v[1] - v[0], v[2] - v[0]));
   bool inside = true;
@@ -60,7 +60,7 @@ constexpr std::array<Joint, 13> spine{{{{-1.74, 0.68, 0.34}, 0.06},
                                        {{1.26, 1.58, 0.00}, 0.15},
                                        {{1.58, 1.52, 0.00}, 0.12}}};
 constexpr std::array<Joint, 2> jaw{{{{1.02, 1.46, 0}, 0.11}, {{1.42, 1.20, 0}, 0.08}}};
-// Of the left half; the right one is its mirror.
+// The left half; the right one is its mirror.
 constexpr std::array<Joint, 3> horn{
     {{{0.94, 1.74, 0.11}, 0.09}, {{0.70, 1.88, 0.19}, 0.075}, {{0.48, 2.06, 0.22}, 0.05}}};
 constexpr Joint eye{{1.12, 1.74, 0.13}, 0.085}, nostril{{1.62, 1.61, 0.08}, 0.06}, cheek{{1.0, 1.56, 0.15}, 0.11};
@@ -126,7 +126,7 @@ double to_dragon(const Vec3d& p) {
 constexpr Vec3d low{-2.05, -0.12, -1.213}, high{1.9, 2.4, 1.2};
 constexpr double cell = 0.067;
 
-/// Where the field is 0, from a place nearby.
+/// Returns a place where the field is 0, near the given one.
 Vec3d onto_surface(Vec3d p) {
   constexpr double h = 1e-4;
   for (int k = 0; k < 3; ++k) {

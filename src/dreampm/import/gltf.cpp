@@ -15,13 +15,13 @@
 namespace dreampm {
 namespace {
 
-/// Where a node stands: what its axes become, and its origin.
+/// The place of a node: its axes and its origin.
 struct Place {
   Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, origin{};
 
   Vec3d turn(const Vec3d& v) const { return x * v.x + y * v.y + z * v.z; }
   Vec3d operator()(const Vec3d& v) const { return turn(v) + origin; }
-  /// That of a node within this one.
+  /// Returns the place of a node within this one.
   Place operator()(const Place& b) const { return {turn(b.x), turn(b.y), turn(b.z), (*this)(b.origin)}; }
   bool mirrors() const { return dot(x, cross(y, z)) < 0; }
 };
@@ -40,7 +40,7 @@ Place place_of(const GltfValue& node) {
           {t[0], t[1], t[2]}};
 }
 
-/// How numbers of an accessor lie.
+/// Returns the type of the numbers of an accessor.
 const NumberType* number_type_of(std::size_t component) {
   switch (component) {
     case 5121:

@@ -10,8 +10,8 @@ namespace dreampm {
 namespace {
 using Json = nlohmann::json;
 
-/// What reads JSON may call itself for a list within a list: they may not be deeper than in any
-/// file of the format.
+/// Throws InputError where lists in lists are deeper than in any file of the format, as readers of
+/// JSON recurse.
 void check_depth(std::string_view json, const std::string& name) {
   constexpr int most = 100;
   int depth = 0;
@@ -40,7 +40,7 @@ std::string_view take_chunk(std::string_view& rest, std::string_view text, const
   return chunk;
 }
 
-/// Whether an extension leaves the triangles of a file as they are.
+/// True if an extension leaves the triangles of a file as they are.
 bool looks_only(std::string_view extension) {
   constexpr std::string_view prefixes[] = {"KHR_materials_",   "KHR_texture_", "EXT_texture_", "MSFT_texture_",
                                            "ADOBE_materials_", "KHR_lights_",  "EXT_lights_",  "KHR_xmp"};

@@ -36,13 +36,13 @@ class GltfValue {
   bool has(const char* key) const;
   GltfValue at(const char* key) const;
   GltfValue at(std::size_t i) const;
-  /// Of a list.
+  /// Returns the length of a list.
   std::size_t size() const;
   /// A whole number from 0 on; `otherwise` where there is no such key.
   std::size_t count(const char* key, std::optional<std::size_t> otherwise = std::nullopt) const;
   std::size_t as_count() const;
   std::string text(const char* key) const;
-  /// As many numbers as `otherwise` has, which stands where there is no such key.
+  /// Returns as many numbers as `otherwise` has, which is the result where there is no such key.
   std::vector<double> numbers(const char* key, std::vector<double> otherwise) const;
   [[noreturn]] void refuse(const std::string& why) const;
 

@@ -6,7 +6,7 @@
 
 namespace dreampm {
 
-/// Whether `bytes` start as a gzip file does.
+/// True if `bytes` start as a gzip file does.
 bool is_gzip(std::string_view bytes);
 
 /// The name without .gz, in upper or lower case.

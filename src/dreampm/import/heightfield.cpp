@@ -18,7 +18,7 @@ struct GrayPicture {
   std::vector<std::uint16_t> pixels;
 };
 
-/// What libpng reads from, and what it says.
+/// The input of libpng, and its message.
 struct Decoding {
   const std::string& bytes;
   std::size_t at = 0;
@@ -40,7 +40,7 @@ void read_bytes(png_structp png, png_bytep to, png_size_t count) {
 
 void ignore(png_structp, png_const_charp) {}
 
-/// Whether it could be read; else what is wrong is in `from`. libpng reports errors by longjmp: no
+/// True if it could be read; else the fault is in `from`. libpng reports errors by longjmp: no
 /// object with a destructor is made here.
 bool decode(Decoding& from, GrayPicture& out) {
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &from, keep_message, ignore);

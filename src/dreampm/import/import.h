@@ -21,7 +21,7 @@ namespace dreampm {
 /// vertices.
 Model read_model(const std::filesystem::path& path);
 
-/// Whether `path` names a PLY file (.ply, .PLY, .ply.gz).
+/// True if `path` names a PLY file (.ply, .PLY, .ply.gz).
 bool is_ply(const std::filesystem::path& path);
 
 /// The cloud of a file of points without faces; nothing of a mesh. Of PLY meshes only the header is

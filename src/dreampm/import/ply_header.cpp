@@ -260,7 +260,7 @@ PlyHeader read_ply_header(const std::filesystem::path& path) {
   std::error_code ec;
   const std::uint64_t bytes = std::filesystem::file_size(path, ec);
   std::string head(ec ? 0 : static_cast<std::size_t>(std::min<std::uint64_t>(bytes, longest_header)), '\0');
-  // What cannot be read so, read_unpacked says why.
+  // If it cannot be read so, read_unpacked says why.
   if (ec || !std::ifstream(path, std::ios::binary).read(head.data(), static_cast<std::streamsize>(head.size())) ||
       is_gzip(head))
     return parse_ply_header(read_unpacked(path), path.string());

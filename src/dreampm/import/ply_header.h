@@ -48,7 +48,7 @@ struct PlyHeader {
 
   /// The element of this name, or null.
   const PlyElement* find(std::string_view element) const;
-  /// Whether some element, face or strip, joins vertices: a mesh, no cloud.
+  /// True if some element, face or strip, joins vertices: a mesh, no cloud.
   bool has_faces() const;
 };
 

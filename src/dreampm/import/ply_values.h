@@ -57,10 +57,10 @@ class PlyValues {
   std::size_t at_ = 0;
 };
 
-/// Where three properties stand in an element, if all three are there and are no lists.
+/// Returns the indices of three properties in an element, if all three are there and are no lists.
 std::optional<std::array<std::size_t, 3>> ply_triple(const PlyElement& element, const char* x, const char* y,
                                                      const char* z);
-/// Where one property stands.
+/// Returns the index of one property.
 std::optional<std::size_t> ply_index(const PlyElement& element, std::string_view name);
 
 inline Vec3d ply_point(const std::vector<double>& values, const std::array<std::size_t, 3>& at) {

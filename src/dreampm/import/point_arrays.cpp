@@ -11,7 +11,7 @@ namespace {
 
 using Take = void (*)(Model&, const PointArray&, const std::string& file);
 
-/// What an array can be.
+/// The meaning of an array.
 struct Meaning {
   std::vector<std::string> names;
   std::size_t least, most;  ///< columns

@@ -1,4 +1,4 @@
-// What a file says of its points beside their places, by the names that programs give it.
+// Arrays of a file's points beside their positions, by the names that programs give them.
 #pragma once
 #include <string>
 #include <vector>
@@ -15,7 +15,7 @@ struct PointArray {
   bool bytes = false;  ///< of colors: 0 to 255, else 0 to 1
 };
 
-/// Whether an array is velocities (velocity, velocities, vel, v, u: three columns), ids (id, ids,
+/// True if an array is velocities (velocity, velocities, vel, v, u: three columns), ids (id, ids,
 /// globalids, particleid, particle_id) or colors (color, colors, rgb, rgba, cd: three or four
 /// columns), in upper or lower case. To be asked before the values of others are read, which may be
 /// no numbers.

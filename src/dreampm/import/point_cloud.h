@@ -29,7 +29,7 @@ MovingCloud read_moving_cloud(const std::filesystem::path& path, double scale = 
 /// The cloud of a model that was read from the file `name`, whose warnings go to the log.
 MovingCloud moving_cloud(Model model, const std::string& name, double scale = 1);
 
-/// How a cloud lies.
+/// The spacing of a cloud, found from its points.
 struct CloudLook {
   std::optional<double> spacing;  ///< m, about the side of the cube that each point has for itself; absent for a few
   std::size_t coincident = 0;     ///< points in the place of another
@@ -40,7 +40,7 @@ struct CloudLook {
 /// points in one place count once.
 CloudLook look_at_cloud(const std::vector<Vec3d>& points);
 
-/// What is to be said of a cloud whose points count as spacing^3 each: points in one place, and a
+/// Returns warnings about a cloud whose points count as spacing^3 each: points in one place, and a
 /// spacing of its own that is more than a quarter off. `name` is for the text.
 std::vector<std::string> cloud_warnings(const std::vector<Vec3d>& points, double spacing, const std::string& name);
 

@@ -11,9 +11,9 @@ namespace dreampm {
 /// The ending of a name in lower case, without .gz: ".ply" of "A.PLY.gz".
 std::string file_kind(const std::filesystem::path& path);
 
-/// Whether files of that ending may hold points.
+/// True if files of that ending may hold points.
 bool is_point_kind(const std::string& kind);
-/// Such endings: ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo".
+/// Returns these endings: ".ply, .vtk, .vtp, .vtu, .vtkhdf, .bgeo".
 std::string point_kinds();
 
 /// The points of such a file, which may be packed with gzip, with velocities, ids, colors and faces

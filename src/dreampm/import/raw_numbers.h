@@ -17,7 +17,7 @@ T raw_number(const char* bytes, bool swapped) {
   return v;
 }
 
-/// How a number lies in a file.
+/// The representation of a number in a file.
 struct NumberType {
   std::string_view name;  ///< as VTK's XML files have it: "Float32"
   std::size_t bytes = 0;  ///< of one

@@ -12,9 +12,9 @@ namespace dreampm {
 /// Lines end with LF, CRLF or CR; a byte order mark at the start and empty lines are skipped.
 class TextLines {
  public:
-  /// What follows the character `comment` in a line is left out; '\0': there are no comments. A
-  /// backslash at the end of a line joins the next one to it if `joined`. `name` is for messages
-  /// and must outlive this object.
+  /// Reads lines of `text`. The rest of a line after the character `comment` is left out; '\0':
+  /// there are no comments. A backslash at the end of a line joins the next one to it if `joined`.
+  /// `name` is for messages and must outlive this object.
   TextLines(std::string_view text, const std::string& name, char comment, bool joined = false);
 
   /// Goes to the next line that has words; false at the end of the text.
@@ -59,7 +59,7 @@ class TextLines {
   std::vector<std::string_view> words_;
 };
 
-/// In lower case, as keywords are compared.
+/// Returns the text in lower case, as keywords are compared.
 std::string lower(std::string_view text);
 
 }  // namespace dreampm

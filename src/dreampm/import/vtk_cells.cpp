@@ -6,7 +6,7 @@
 namespace dreampm {
 namespace {
 
-/// What a cell is to a mesh, by VTK's number of its type.
+/// The role of a cell in a mesh, by VTK's number of its type.
 enum class Role { none, polygon, strip, solid };
 Role role_of(double type) {
   if (type == 5 || type == 7 || type == 9) return Role::polygon;

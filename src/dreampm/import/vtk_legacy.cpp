@@ -232,7 +232,7 @@ class LegacyFile {
     const NumberType& type = need_type();
     values(rows_ * columns, type, "TEXTURE_COORDINATES");
   }
-  /// Before POINT_DATA it is of the whole data set.
+  /// Reads a field: before POINT_DATA it is of the whole data set.
   void field(const std::string&) {
     need_word("a name");
     for (std::size_t n = need_count("arrays"); n > 0; --n) {
@@ -247,7 +247,7 @@ class LegacyFile {
       keep({name, columns, values(rows * columns, type, "FIELD"), type.bytes == 1});
     }
   }
-  /// Of an array that is passed over.
+  /// Skips the bytes of an array that is not used.
   void pass_over(std::size_t bytes) {
     if (bytes > text_.size() - at_) fail_input("{}: is cut short: it ends in an array of bits or texts", name_);
     at_ += bytes;

@@ -90,7 +90,7 @@ std::size_t VtkXmlData::length(std::string_view header, std::size_t number, cons
   return wide_ ? raw_number<std::uint64_t>(at, swapped_) : raw_number<std::uint32_t>(at, swapped_);
 }
 
-/// Not packed: a length, then the bytes.
+/// Returns bytes that are not packed: a length, then the bytes.
 std::string VtkXmlData::bytes(std::string_view from, bool base64, const std::string& what) const {
   const std::size_t head = wide_ ? 8 : 4;
   const std::string start = base64 ? base64_decoded(from, head) : std::string(from.substr(0, head));

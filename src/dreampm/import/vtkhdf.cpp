@@ -25,7 +25,7 @@ hid_t open_bytes(std::string_view bytes, const std::string& name) {
   return file;
 }
 
-/// Whether an object has a link of that name.
+/// True if an object has a link of that name.
 bool has_link(hid_t object, const std::string& name, const std::string& file) {
   const htri_t there = H5Lexists(object, name.c_str(), H5P_DEFAULT);
   if (there < 0) fail_input("{}: is damaged: HDF5 cannot look for {} in it", file, name);

@@ -12,8 +12,8 @@
 
 namespace dreampm {
 
-/// What a file says it is. A reader asks for `format` and `version`; `scene_hash` ties a checkpoint
-/// to its scene.
+/// The identity that a file states. A reader asks for `format` and `version`; `scene_hash` ties a
+/// checkpoint to its scene.
 struct ArchiveIdentity {
   std::string format;  ///< such as "dreampm-checkpoint"
   std::uint32_t version = 1;
@@ -25,9 +25,9 @@ concept ArchiveValue = std::is_same_v<T, float> || std::is_same_v<T, double> || 
                        std::is_same_v<T, std::uint32_t> || std::is_same_v<T, std::uint64_t> ||
                        std::is_same_v<T, std::int64_t> || std::is_same_v<T, std::uint8_t>;
 
-/// Only write_archive makes one. Names may hold '/' to group. Everything is stored bit for bit (NaN
-/// payloads, -0). Throws RunError with the reason if the file cannot be written, InputError on a
-/// name used twice.
+/// A writer of archives, made by write_archive alone. Names may hold '/' to group. Everything is
+/// stored bit for bit (NaN payloads, -0). Throws RunError with the reason if the file cannot be
+/// written, InputError on a name used twice.
 class ArchiveWriter {
  public:
   template <ArchiveValue T>

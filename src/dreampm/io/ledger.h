@@ -11,7 +11,7 @@ namespace dreampm {
 /// Writes rows as they come; each row is in the file when append returns.
 class LedgerWriter {
  public:
-  /// With `keep_until` 0 starts a new file; otherwise keeps the rows of an existing file up to that
+  /// Starts a new file with `keep_until` 0; otherwise keeps the rows of an existing file up to that
   /// frame (a resumed run), whose columns must be those of the kind. Throws InputError if the file
   /// is damaged or has other columns, RunError if it cannot be written.
   LedgerWriter(std::filesystem::path file, const LedgerKind& kind, int keep_until = 0);

@@ -136,7 +136,7 @@ consteval const LedgerColumn& ledger_column(Member LedgerRow::* member) {
   throw "no column shows this member";
 }
 
-/// What a run is by which its columns are chosen.
+/// The properties of a run by which its columns are chosen.
 struct LedgerKind {
   bool emitters = false, projection = false;
 
@@ -150,7 +150,7 @@ struct LedgerCell {
   const LedgerColumn* column = nullptr;
   int axis = 0;
 
-  /// As the file has it: `momentum_x`.
+  /// Returns the name in the file: `momentum_x`.
   std::string name() const;
 };
 /// The cells of a run's rows, in their order.

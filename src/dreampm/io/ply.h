@@ -24,7 +24,7 @@ Vec3d read_ply_shift(const std::filesystem::path& file);
 /// The header's line for it; empty for none.
 std::string ply_shift_comment(const Vec3d& shift);
 
-/// What headers say of the files of a run.
+/// A note in the headers of a run's files.
 inline constexpr const char* si_note = "SI units, Y up";
 
 /// One frame of particles, a column each; all columns have size() rows, optional ones may be empty.
@@ -69,7 +69,7 @@ TriMesh read_mesh(const std::filesystem::path& file);
 /// numbers.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
                const std::string& note = si_note);
-/// Its line for a vertex.
+/// Returns the OBJ line of a vertex.
 std::string obj_vertex(const Vec3f& v, const Vec3d& shift);
 
 }  // namespace dreampm

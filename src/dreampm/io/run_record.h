@@ -27,11 +27,12 @@ struct FrameRecord {
   std::string state_hash;
   std::uint64_t particles = 0;
   std::uint64_t left = 0;  ///< particles that left through open walls so far
-  /// Where rigid bodies stand, by name, of the shape as the scene gives it.
+  /// The poses of rigid bodies by name, for the shape as the scene gives it.
   std::map<std::string, Pose> poses = {};
 };
 
-/// What a frame's mesh encloses, beside the volume of its particles: at rest, and as they lie.
+/// The volume that a frame's mesh encloses, beside the volume of its particles: at rest, and as
+/// they lie.
 struct VolumeRecord {
   int frame = 1;
   std::string material;
@@ -81,7 +82,7 @@ struct RunRecord {
 
   /// A record with version and commit of this build and the four stages, none run.
   static RunRecord for_this_build();
-  /// How a stage ended; status, cause and failed_stage follow from all of them.
+  /// Records the end of a stage; status, cause and failed_stage follow from all of them.
   void end_stage(const std::string& stage, std::optional<std::string> status,
                  std::optional<std::string> cause = std::nullopt);
   std::string to_json() const;
@@ -101,9 +102,9 @@ std::uint64_t machine_memory_bytes();
 std::uint64_t available_memory_bytes();
 /// The most memory this process held at once so far, in bytes.
 std::uint64_t peak_memory_bytes();
-/// What it holds now, in bytes; 0 if the system does not say.
+/// Returns the memory of this process, in bytes; 0 if the system does not say.
 std::uint64_t resident_memory_bytes();
-/// From now on peak_memory_bytes counts anew. False where the system cannot.
+/// Makes peak_memory_bytes count anew. Returns false where the system cannot.
 bool restart_peak_memory();
 
 }  // namespace dreampm

@@ -89,7 +89,7 @@ TriMesh in_voxels(const Model& model, double factor, const Vec3d& origin, double
 /// A hole wider than this part of the mesh is no fault of scanning.
 constexpr double wide_hole = 0.25;
 
-/// What who wants the inside of the mesh may not expect.
+/// Returns warnings about properties of a mesh that a user of its inside may not expect.
 std::vector<std::string> surprises(const Model& model, double longest, const Openness& open, const std::string& name) {
   std::vector<std::string> lines;
   if (enclosed_volume(model) < 0)
@@ -107,7 +107,7 @@ double longest_side(const Box3d& box) {
   return std::max({size.x, size.y, size.z});
 }
 
-/// For those who ask for bounds alone.
+/// A region for those who ask for bounds alone.
 class BoundsOnly final : public Region {
  public:
   explicit BoundsOnly(const Box3d& box) : box_(box) {}
@@ -242,7 +242,7 @@ double level_set_volume(const Region& region) {
 struct Meshes::Made {
   /// The file, fit, scale, voxel, reach, thickness (0: the inside).
   using Key = std::tuple<std::string, std::optional<double>, std::optional<double>, double, double, double>;
-  /// Of a height field with its box, for which it is another mesh.
+  /// Returns the file of a mesh, or of a height field with its box, for which it is another mesh.
   static std::string file_of(const MeshShape& shape) {
     if (!shape.heights) return shape.path;
     const auto& [min, max] = *shape.heights;

@@ -40,7 +40,7 @@ double thickness_of(const Model& model);
 /// `voxel`: half of the thickness, but a quarter of `voxel` at least.
 double voxel_of_wall(double thickness, double voxel);
 
-/// What a mesh says of itself before any distance is known, sized as its shape asks.
+/// The properties of a mesh before any distance is known, sized as its shape asks.
 struct MeshLook {
   Box3d bounds;                  ///< m
   std::optional<double> volume;  ///< m^3, of a mesh that is closed and one part; others may enclose a place twice
@@ -54,13 +54,14 @@ struct MeshLook {
 /// Reads each file or asset once, and gives what scenes want of it.
 class Meshes {
  public:
-  /// What is to be said of a file (its model's warnings, faces that look inward, wide holes) is
-  /// logged when it is read, or kept for warnings().
+  /// The destination of warnings about a file (its model's, faces that look inward, wide holes):
+  /// the log when it is read, or warnings().
   enum class Say { log, keep };
   explicit Meshes(Say say);
   std::vector<std::string> warnings() const;
-  /// For make_region: sizes the mesh (`longest` or `scale`, about the file's origin), and makes its
-  /// region. Equal requests share one region while it lives. `reach` as in mesh_region.
+  /// Returns regions for make_region: sizes the mesh (`longest` or `scale`, about the file's
+  /// origin), and makes its region. Equal requests share one region while it lives. `reach` as in
+  /// mesh_region.
   MeshRegions regions(double reach = 0) const;
   /// Regions whose voxels are down to a quarter of those asked for where the mesh is a thin wall,
   /// so that two take up its thickness: a wall of one may fall between the places that are sampled.
@@ -69,7 +70,8 @@ class Meshes {
   /// The shells of that thickness [m] about meshes (shell.h). Of these it is not said that they are
   /// open.
   MeshRegions shells(double thickness, double reach) const;
-  /// For make_region, where only bounds are asked for: distances are those to the bounds.
+  /// Returns regions for make_region where only bounds are asked for: distances are those to the
+  /// bounds.
   MeshRegions boxes() const;
   MeshLook look(const MeshShape& shape) const;
 

@@ -15,7 +15,7 @@
 namespace dreampm {
 namespace {
 
-/// Between two regions.
+/// A region between two others.
 class Between final : public Region {
  public:
   Between(std::shared_ptr<const Region> a, std::shared_ptr<const Region> b, double part)
@@ -84,7 +84,7 @@ struct MeshSequence::Impl {
   mutable std::mutex mutex;
   mutable std::map<std::pair<std::size_t, int>, std::shared_ptr<const Still>> stills;  ///< the last few
 
-  /// Where in the sequence a time lies: `part` of the way from file `from` to the next one.
+  /// The place of a time in the sequence: `part` of the way from file `from` to the next one.
   struct Place {
     std::size_t from;
     double part;

@@ -24,7 +24,7 @@ class MeshSequence final : public ChangingRegion {
   Vec3d velocity(const Vec3d& p, double time) const override;
   double fastest(double from, double to) const override;
   double farthest(double from, double to) const override;
-  /// Its surface at a time, vertices counted from `origin` [m].
+  /// Returns its surface at a time, vertices counted from `origin` [m].
   TriMesh mesh(double time, const Vec3d& origin) const;
 
  private:

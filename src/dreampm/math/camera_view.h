@@ -1,4 +1,4 @@
-// Where the camera of a scene stands: one answer for pictures, exports and the playground.
+// The camera of a scene: one placement for pictures, exports and the playground.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -18,7 +18,7 @@ using Four = typename NumbersOf<R, 4>::Type;
 template <class R>
 using Eight = typename NumbersOf<R, 8>::Type;
 
-/// Of four numbers that follow one another, such as the members of an object.
+/// Loads four consecutive numbers, such as the members of an object.
 template <class R>
 [[gnu::always_inline]] inline void load(const void* from, Four<R>& to) {
   std::memcpy(&to, from, sizeof to);

@@ -88,7 +88,8 @@ struct Lanes<float> {
 DM_FN Lanes<float> select(LaneMask m, Lanes<float> a, Lanes<float> b) { return hn::IfThenElse(m.m, a.v, b.v); }
 DM_FN Lanes<float> mul_add(Lanes<float> a, Lanes<float> b, Lanes<float> c) { return hn::MulAdd(a.v, b.v, c.v); }
 DM_FN Lanes<float> mul_sub(Lanes<float> a, Lanes<float> b, Lanes<float> c) { return hn::MulSub(a.v, b.v, c.v); }
-// As the scalar ones: a NaN in the first place gives the second. So do the instructions of x86.
+// The minimum and maximum as for scalars: a NaN in the first place gives the second. So do the
+// instructions of x86.
 #if HWY_ARCH_X86
 DM_FN Lanes<float> min(Lanes<float> a, Lanes<float> b) { return hn::Min(a.v, b.v); }
 DM_FN Lanes<float> max(Lanes<float> a, Lanes<float> b) { return hn::Max(a.v, b.v); }
@@ -174,7 +175,7 @@ DM_FN void store_first(Lanes<float> a, float* p, int n) {
 }
 
 #ifndef DM_SIXTEEN_LANES
-/// Where each lane looks into four floats: by bytes, for AMD's processors look up slowly across
+/// Indices of each lane into four floats, by bytes, for AMD's processors look up slowly across
 /// eight lanes.
 class FourPick {
  public:
@@ -195,7 +196,7 @@ class FourPick {
   mutable hn::Vec<Bytes> bytes_;
 };
 #else
-/// Where each lane looks into rows of eight floats: two that lie side by side, or twice two.
+/// Indices of each lane into rows of eight floats: two that lie side by side, or twice two.
 class SquarePick {
  public:
   SquarePick() = default;
@@ -285,8 +286,8 @@ struct NodesVec {
   DM_FN void store(float* p) const { hn::StoreU(v, D(), p); }
   /// The same four numbers in every node. `node`: aligned to 16 bytes.
   static DM_FN NodesVec repeat(const float* node) { return hn::LoadDup128(D(), node); }
-  /// Of four numbers, one for each node of the row, those of the nodes from `first` on, four times
-  /// each. `record`: aligned to 16 bytes.
+  /// Returns the four numbers of the nodes from `first` on, one number a node, four times each.
+  /// `record`: aligned to 16 bytes.
   static DM_FN NodesVec each(const float* record, int first) {
     using Bytes = hn::Repartition<std::uint8_t, D>;
     const auto four = hn::BitCast(Bytes(), hn::LoadDup128(D(), record));

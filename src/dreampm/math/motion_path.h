@@ -12,7 +12,8 @@ namespace dreampm {
 
 struct MotionPath {
   std::vector<PoseKey> keys;  ///< by time; before the first and after the last the shape stands still
-  /// Whether it comes to rest at every key (smoothstep), or goes in straight lines from key to key.
+  /// True if the motion comes to rest at every key (smoothstep); false if it is linear between
+  /// keys.
   bool smooth = false;
   Vec3d center{};    ///< m, in the shape as the scene gives it: about which it turns
   Vec3d velocity{};  ///< m/s, where there are no keys
@@ -66,8 +67,8 @@ struct MotionPath {
     const double sine = length(axis);
     return sine > 0 ? axis * (2 * std::atan2(sine, std::abs(q.w)) / sine) : Vec3d{};
   }
-  /// Between keys of one axis the angle goes its way, be it several turns; between others the
-  /// shortest.
+  /// True if both keys turn about one axis: the angle between them may be several turns; else it is
+  /// the shortest.
   static bool one_axis(const PoseKey& a, const PoseKey& b) {
     return a.rotate_angle == 0 || b.rotate_angle == 0 || normalized(a.rotate_axis) == normalized(b.rotate_axis);
   }

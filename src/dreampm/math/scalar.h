@@ -64,7 +64,7 @@ DM_FN R round_int(R a) {
 /// 2^n for integral n within the range of normal numbers.
 DM_FN float exp2_int(float n) { return std::bit_cast<float>((static_cast<std::int32_t>(n) + 127) << 23); }
 DM_FN double exp2_int(double n) { return std::bit_cast<double>((static_cast<std::int64_t>(n) + 1023) << 52); }
-/// For normal a > 0: the exponent n with a = m 2^n, m in [1, 2).
+/// Returns for normal a > 0 the exponent n with a = m 2^n, m in [1, 2).
 DM_FN float exponent_of(float a) { return static_cast<float>((std::bit_cast<std::int32_t>(a) >> 23) - 127); }
 DM_FN double exponent_of(double a) { return static_cast<double>((std::bit_cast<std::int64_t>(a) >> 52) - 1023); }
 DM_FN bool any(bool m) { return m; }

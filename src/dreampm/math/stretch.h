@@ -57,7 +57,7 @@ DM_FN Stretches<R> stretches_of(const Mat3<R>& f, double least) {
   d.s = {sqrt(a.apart + one), sqrt(a.middle + one), sqrt(a.other + one)};
   d.base = f;
   d.base_s = d.s;
-  // What is no number is not tame.
+  // A NaN is not tame.
   const R smallest = min(a.apart, a.other) + one, border = R(S(least)) * max(max(a.apart, a.other) + one, one);
   const auto tame = smallest > border && determinant(f) > R(S(0));
   if (any(!tame)) [[unlikely]] {

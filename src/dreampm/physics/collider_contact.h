@@ -44,7 +44,7 @@ struct ColliderContact {
   /// edge's own point.
   static constexpr double limiter_reach2 = 0.9;
 
-  // Where particles touch.
+  // Contact of particles with walls and colliders.
 
   /// Distance between particles and a wall at which contact begins [spacings]. A particle takes
   /// half a spacing of the room before it; the rest keeps strain from opening the contact again.

@@ -53,29 +53,29 @@ DM_FN R wall_shear(const R& re) {
   return one / (u * u);
 }
 
-/// How far from the wall [cells] the matter is, in the mean, that a node on it stands for: of |x|
+/// Mean distance from the wall of the matter that a node on it stands for [cells]: the mean of |x|
 /// under the quadratic spline.
 inline constexpr double wall_node_height = 13.0 / 32;
 
 // Viscous contact is given as a drag: a rate times dt [1]. Taken implicitly, x/(1 + x) of the
 // velocity is lost.
 
-/// Of a liquid at a node on a smooth wall, by its boundary layer: the node stands for the half cell
-/// beside the wall, which moves at `speed` > 0 [m/s] in its middle. `viscosity` > 0 [m^2/s],
-/// `per_step` = dt/dx [s/m].
+/// Returns the drag on a liquid at a node on a smooth wall, by its boundary layer: the node stands
+/// for the half cell beside the wall, which moves at `speed` > 0 [m/s] in its middle. `viscosity` >
+/// 0 [m^2/s], `per_step` = dt/dx [s/m].
 template <class R>
 DM_FN R skin_drag(const R& speed, const R& viscosity, const R& dx, const R& per_step) {
   using S = Scalar<R>;
   return R(S(2)) * wall_shear(speed * dx * R(S(wall_node_height)) / viscosity) * speed * per_step;
 }
-/// Of the slip between a liquid and a solid that share a node, by viscosity over one cell:
-/// `diffusion` = dt nu/dx^2 of the liquid; masses [kg].
+/// Returns the drag on the slip between a liquid and a solid that share a node, by viscosity over
+/// one cell: `diffusion` = dt nu/dx^2 of the liquid; masses [kg].
 template <class R>
 DM_FN R slip_drag(const R& diffusion, const R& m_liquid, const R& m_solid) {
   return diffusion * (m_liquid + m_solid) / m_solid;
 }
-/// Over dt nu/dx^2, the skin's drag in viscous flow. More than this no viscous contact has among
-/// the forces of a stage (physics/dt.h).
+/// The skin's drag in viscous flow over dt nu/dx^2. No viscous contact has more than this among the
+/// forces of a stage (physics/dt.h).
 inline constexpr double stage_drag = 2 / wall_node_height;
 
 /// Takes `change` [m/s] off the velocity between a liquid and a solid at a node; momentum is kept.

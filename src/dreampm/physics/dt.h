@@ -25,7 +25,7 @@ inline constexpr double wave_margin = 1.05;
 /// factor.
 inline constexpr double shock_margin = 1.2;
 
-/// What bounds a step, all the largest of their kind.
+/// The speeds and rates that bound a step, each the largest of its kind.
 struct SignalSpeeds {
   double speed = 0;      ///< m/s, of nodes
   double wave = 0;       ///< m/s, of particles
@@ -66,11 +66,11 @@ constexpr double euler_dt(double dx, double viscosity, int contacts) {
 
 /// More would save next to nothing: what is left of such a step is stages.
 inline constexpr int most_stages = 20;
-/// What a stage costs, over a step (docs/theory/liquid.md).
+/// The cost of a viscous stage over that of a step (docs/theory/liquid.md).
 inline constexpr double stage_cost = 0.8;
 
 constexpr double dt_of_stages(int stages, double euler_dt) { return 0.5 * stages * (stages + 1) * euler_dt; }
-/// As few as take a step of dt; 0 if that can be explicit.
+/// Returns the fewest stages that reach a step of dt; 0 if explicit viscosity does.
 constexpr int stages_of(double dt, double dx, double viscosity, int contacts) {
   constexpr double rounding = 1 + 1e-9;
   int stages = 0;

@@ -1,4 +1,4 @@
-// What a force field says of itself: one table feeds parser, messages and the written scene.
+// Description of a force field: one table feeds parser, messages and the written scene.
 //
 // A field is a struct with
 //   name, help       how scenes call it, and what it does
@@ -25,8 +25,8 @@ struct Passage {
   std::array<bool, 3> endless{};  ///< along which axes it may go round and round: there `from` is as `within`
 };
 
-/// What a constant acceleration a [m/s^2] gives [m^2/s^2] from the corner of `from` that it comes
-/// from to that of `within` that it points to.
+/// Returns the work per mass of a constant acceleration a [m/s^2] from the farthest corner of
+/// `from` against it to the farthest corner of `within` along it [m^2/s^2].
 inline double head_of(const Vec3d& a, const Passage& p) {
   double head = 0;
   for (int i = 0; i < 3; ++i)
@@ -34,8 +34,8 @@ inline double head_of(const Vec3d& a, const Passage& p) {
   return head > 0 ? head : 0;
 }
 
-/// What it has [m^2/s^2] that was drawn to the velocity u [m/s] round by round, beside what one
-/// round gives.
+/// Returns the kinetic energy per mass [m^2/s^2] of matter that was drawn to the velocity u [m/s]
+/// round by round, beyond the energy of one round.
 inline double head_of_rounds(const Vec3d& u, const Passage& p) {
   double head = 0;
   for (int i = 0; i < 3; ++i) head += p.endless[static_cast<std::size_t>(i)] ? u[i] * u[i] / 2 : 0;

@@ -42,7 +42,7 @@ inline AnyField make_field(const model::ForceField& given) {
   });
   return field;
 }
-/// As a scene says it, every value explicit; without its name and box.
+/// Returns the field as a scene gives it, every value explicit; without its name and box.
 inline model::ForceField as_model(const AnyField& field) {
   model::ForceField out;
   std::visit(

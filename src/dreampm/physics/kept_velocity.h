@@ -1,5 +1,4 @@
-// What scenes say about the own velocities of particles, and for how long these are kept where they
-// say nothing.
+// Keys of scenes for the own velocities of particles, and the defaults for how long these are kept.
 #pragma once
 #include "dreampm/physics/transfer_rule.h"
 

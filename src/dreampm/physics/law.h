@@ -8,7 +8,7 @@
 
 namespace dreampm {
 
-/// What a law gets of the grid in one step.
+/// The grid's data for a law in one step.
 template <class R>
 struct StrainIncrement {
   Mat3<R> gradient;  ///< dt grad v [1]
@@ -18,7 +18,7 @@ struct StrainIncrement {
   /// s/m: the time since the last volume relaxation over 300 dx; 0 in a step that does not. Times
   /// the law's pace [m/s] it is dt/tau, tau = 300 dx/c.
   Scalar<R> volume_relaxation;
-  // Of liquids, in a step that relaxes their volume:
+  // Members for liquids, in a step that relaxes their volume:
   R strain = R(Scalar<R>(0));          ///< |sym grad v| times the time since the last volume relaxation [1]
   R inside = R(Scalar<R>(1));          ///< 0 to 1: 1 where the nodes around are full, 0 at surfaces
   R surface_filled = R(Scalar<R>(1));  ///< factor of `volume` as if nodes at surfaces were full; at most 1
@@ -40,7 +40,7 @@ DM_FN R measured_volume(const StrainIncrement<R>& at) {
   return moved_volume(at.volume, at.gradient);
 }
 
-/// By how much liquid has swollen, from the measured volume corrected for the surface.
+/// The swelling of a liquid, from the measured volume corrected for the surface.
 template <class R>
 struct Swelling {
   R strain;  ///< volume over that at rest, less 1 [1]
@@ -60,9 +60,9 @@ struct Swelling {
   using S = Scalar<R>;
 };
 
-/// How far a relaxation goes in x >= 0 of its time: 1 - e^-x within x^4/24, and no further than
-/// 2/3, as from 1 on. The x of a stable step are below 0.1. Digits that the difference would lose
-/// are kept, and no e is raised for every particle.
+/// Returns the share of a relaxation after x >= 0 of its time: 1 - e^-x within x^4/24, and no more
+/// than 2/3, as from 1 on. The x of a stable step are below 0.1. Digits that the difference would
+/// lose are kept, and no e is raised for every particle.
 template <class R>
 DM_FN R relaxed_share(const R& x) {
   using S = Scalar<R>;
@@ -84,8 +84,8 @@ DM_FN auto volume_ratio(const Law& law, const State& state) {
 /// al. 2021).
 inline constexpr double pressed_ratio = 0.999;
 
-/// From 0 to 1: how far matter has come apart, so that it may move by itself (ASFLIP). By its
-/// volume, unless the law knows better.
+/// Returns the degree from 0 to 1 to which matter has come apart, so that it may move by itself
+/// (ASFLIP). It follows from the volume, unless the law has its own.
 template <class Law, class State>
 DM_FN auto separated_fraction(const Law& law, const State& state) {
   if constexpr (requires { law.separated_fraction(state); }) {
@@ -112,7 +112,7 @@ struct Dissipation {
   R relaxed = R(Scalar<R>(0));  ///< given up where J or gaps are drawn to the measured density
 };
 
-/// What a law returns.
+/// The result of a law.
 template <class R>
 struct StressResponse {
   Sym3<R> tau;                      ///< Kirchhoff stress J sigma [Pa]

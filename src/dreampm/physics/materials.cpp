@@ -34,9 +34,9 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values) {
 
 namespace {
 
-/// Of an impact at `speed`, which strains along `direction`, by a little more from one try to the
-/// next and then by halves up to the jump of momentum: the faster of the waves behind the front,
-/// and the front itself as matter that arrives meets it.
+/// Returns the largest speed that follows from an impact at `speed` that strains along `direction`:
+/// of the waves behind the front, or of the front itself as arriving matter meets it. The strain
+/// grows by a little from one try to the next, then by halves up to the jump of momentum.
 template <class M>
 double driven(const typename M::template Law<double>& law, const Mat3d& direction, double most, double speed,
               double density) {

@@ -56,7 +56,7 @@ using Materials = decltype(joined(OwnMaterials{}, ExtraMaterials{}));
 /// for an unknown name.
 double shock_wave_speed(std::string_view material, const Values& values, double speed);
 
-/// How many state columns a material stores.
+/// The number of state columns of a material.
 template <class M>
 inline constexpr int state_columns = static_cast<int>(std::size(M::template State<float>::names));
 

@@ -28,10 +28,10 @@ struct BoxWalls {
     for (int a = 0; a < 3; ++a) w.low[a] -= first[a], w.high[a] -= first[a];
     return w;
   }
-  /// Whether some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or
+  /// True if some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or
   /// behind it.
   bool reaches(int side, int count) const { return side % 2 == 0 ? low[side / 2] >= 0 : high[side / 2] < count; }
-  /// Which nodes with the numbers `n` do.
+  /// Returns a mask: true for the nodes `n` that do.
   template <class R>
   DM_FN auto holds(int side, const Vec3<R>& n) const {
     const int a = axis_of(side);

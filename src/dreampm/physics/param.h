@@ -76,7 +76,7 @@ struct Preset {
   std::span<const Value> values;
 };
 
-/// What a user may know about a material without its law.
+/// The public description of a material, without its law.
 struct MaterialInfo {
   std::string_view name, help;
   std::span<const Param> params;
@@ -90,7 +90,7 @@ struct MaterialInfo {
   }
 };
 
-/// What a set of values comes to, for matter at rest.
+/// Derived values of a set of parameters, for matter at rest.
 struct MaterialFacts {
   double sound_speed;          ///< m/s
   double kinematic_viscosity;  ///< what bounds the step [m^2/s]; 0 where the law solves its viscosity implicitly
@@ -104,7 +104,8 @@ MaterialFacts facts_of(const MaterialInfo& info, const Values& values);
 std::span<const MaterialInfo> material_infos();
 /// The material of that name, or null.
 const MaterialInfo* find_material(std::string_view name);
-/// That of a checked scene's material. Throws std::out_of_range for a type that is not in the list.
+/// Returns the description of a checked scene's material. Throws std::out_of_range for a type that
+/// is not in the list.
 const MaterialInfo& info_of(const model::Material& material);
 
 }  // namespace dreampm

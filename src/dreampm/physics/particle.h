@@ -9,62 +9,64 @@
 
 namespace dreampm {
 
-/// What is the same for all particles of a set in one step.
+/// Constants of all particles of a set in one step.
 template <class S>
 struct SetStep {
-  S dt, dt_next;   ///< s: the step that moves, and the one whose force is baked into the grid
+  S dt, dt_next;   ///< s: of this step, which moves particles, and of the next one, whose force is scattered
   S dx;            ///< m
   S mass, volume;  ///< of one particle, kg and m^3 at rest
-  S full;          ///< what a full node holds, as in G2PResult::content
+  S full;          ///< content of a full node, in the unit of G2PResult::node_content
   bool keep_inside;
-  S margin;  ///< cells before a wall or a collider that particles come no further into; at least `inside_margin`
-  TransferRule<S> transfer;  ///< its blend: what the step that moves keeps
-  S keep_next;               ///< what the step to come keeps of own velocities
+  S margin;  ///< distance that particles keep from walls and colliders [cells]; at least `inside_margin`
+  TransferRule<S> transfer;  ///< its blend is the share of own velocities that this step keeps
+  S keep_next;               ///< share of own velocities that the next step keeps
   S volume_relaxation;       ///< as in StrainIncrement
-  bool sub_cycled;           ///< whether the force of the step to come is left to sub-cycles
-  S jump;  ///< m/s: what the transfer's `advance` adds along an axis at most, so that steps can be bounded
+  bool sub_cycled;           ///< true if the force of the next step is left to sub-cycles
+  S max_own_speed;  ///< m/s: the most that the transfer's `advance` adds along an axis, so that steps can be bounded
 };
 
 /// Node planes of walls, counted from the block's first_stencil(); an open side lies far away.
 template <class S>
 struct BlockWalls {
   S low[3], high[3];
-  bool shades[3];  ///< by axis: a wall of it cuts kernels off, as the grid has no images behind it
-  bool near;       ///< within reach of a particle of the block: 2.5 cells, where open_fraction is less than 1
-  bool colliders;  ///< whether there are any about
+  bool
+      truncates_kernel[3];  ///< by axis: true if one of its walls cuts kernels off, as the grid has no images behind it
+  bool near;  ///< true if a wall is within 2.5 cells of a particle of the block, where open_fraction is less than 1
+  bool colliders;  ///< true if there are colliders near the block
 };
 
-/// What the gather found at a particle.
+/// The result of the gather (G2P) at a particle.
 template <class R>
 struct G2PResult {
   Vec3<R> v;                 ///< m/s
   Vec3<R> affine_moment[3];  ///< sum w v (x_i - x_p)_a, m/s cells
-  /// sum w of what the nodes of the particle's own field hold: mass [kg], or, where sets of several
-  /// densities share it, rest volume over dx^3 [1]; only where the step measures a density,
-  R content;
-  R blocked;                      ///< and so this: sum w blocked_i [1]
-  R excess;                       ///< m/s cells: of tr C over the divergence of the splines' field; only of liquids
-  DensityState<R> density_state;  ///< only of volume-relaxed liquids in a step that anchors
-  Vec3<R> away;                   ///< gradient of the distance from colliders [1],
-  R clearance;                    ///< and that distance [cells], negative inside; both only where there are some about
-  Vec3<R> own;                    ///< m/s: the particle's own velocity,
-  Vec3<R> velocity_old;  ///< and sum w v_i before the grid's forces; both only where the transfer keeps velocities
+  /// Content of the nodes of the particle's field, weighed: mass [kg], or, where sets of several
+  /// densities share the field, rest volume over dx^3 [1]. Only where the step measures a density.
+  R node_content;
+  R blocked;        ///< sum w blocked_i [1]; only where the step measures a density
+  R affine_excess;  ///< m/s cells: excess of tr C over the divergence of the splines' field; only of liquids
+  DensityState<R> density_state;  ///< only of volume-relaxed liquids in a step that relaxes volume
+  Vec3<R> clearance_gradient;     ///< gradient of `clearance` [1]
+  R clearance;                    ///< distance from colliders [cells], negative inside; only where there are some near
+  Vec3<R> own_velocity;           ///< m/s: the particle's own; only where the transfer keeps velocities
+  Vec3<R> velocity_old;           ///< sum w v_i before the grid's forces; only where the transfer keeps velocities
 };
 
-/// What goes back to the grid: (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in cells.
+/// The terms of the scatter (P2G): a node gets (q + sum slope_a (x_i - x_p)_a) w, x_i - x_p in
+/// cells.
 template <class R>
 struct P2GTerms {
   Vec3<R> q, slope[3];
-  Vec3<R> own;      ///< m/s: the particle's velocity now
-  Vec3<R> shifted;  ///< cells: besides what it moved; only of volume-relaxed liquids in a step that relaxes volume, and
-                    ///< where there are colliders about
+  Vec3<R> own_velocity;  ///< m/s: the particle's velocity now
+  Vec3<R> shifted;       ///< cells: displacement besides its velocity's; only of volume-relaxed liquids in a step that
+                         ///< relaxes volume, and where there are colliders about
   /// Volume that the particle takes beyond that at rest, over that at rest [1]; 0 but of
   /// volume-relaxed liquids in a step that relaxes volume. 0 where the nodes hold less than
   /// `least_content` of a full one: drops of spray are no swollen liquid.
   R swollen;
 };
 
-/// Whether particles have to know the density around them in a step with this anchoring [s/m].
+/// True if particles need the density around them in a step with this volume relaxation [s/m].
 template <class M, class S>
 constexpr bool measures(S volume_relaxation) {
   return M::wants_density && (!VolumeRelaxed<M> || volume_relaxation > S(0));
@@ -94,10 +96,10 @@ DM_FN S stress_slope(const SetStep<S>& set, S dt) {
   return -dt * S(apic_inertia) * set.volume / set.dx;
 }
 
-/// What a particle that keeps its velocity gives to the grid's velocities before their forces:
-/// momentum and mass, times what the step to come keeps. What sets keep beyond those, kept m (v_p -
-/// v_before), then adds up to nothing, whatever each keeps: else momentum would be lost or won
-/// where sets of two blends share nodes.
+/// The part of a particle with an own velocity in the grid's velocities before forces: its momentum
+/// and mass, times the share that the coming step keeps. The sum of kept m (v_p - v_before) over
+/// particles is then zero, whatever share each set keeps; else momentum would be lost or won where
+/// sets of two blends share nodes.
 template <class R>
 struct OldVelocityTerm {
   Vec3<R> q, slope[3];
@@ -115,7 +117,7 @@ template <class R>
 DM_FN R kinetic_energy(const G2PResult<R>& g, const P2GTerms<R>& now, const SetStep<Scalar<R>>& set) {
   using S = Scalar<R>;
   const R turning = fused_norm2(g.affine_moment[0]) + fused_norm2(g.affine_moment[1]) + fused_norm2(g.affine_moment[2]);
-  return R(S(0.5)) * mul_add(turning, R(S(apic_inertia) * set.transfer.affine), fused_norm2(now.own));
+  return R(S(0.5)) * mul_add(turning, R(S(apic_inertia) * set.transfer.affine), fused_norm2(now.own_velocity));
 }
 
 /// The open part of the kernel at `u` beside those walls of the box behind which there are no
@@ -126,7 +128,7 @@ DM_FN R open_fraction_at(const Vec3<R>& u, const BlockWalls<Scalar<R>>& walls) {
   R open(S(1));
   if (!walls.near) return open;
   for (int a = 0; a < 3; ++a) {
-    if (!walls.shades[a]) continue;
+    if (!walls.truncates_kernel[a]) continue;
     const R x = u[a] + R(S(0.5));
     open = open * open_fraction(x - R(walls.low[a])) * open_fraction(R(walls.high[a]) - x);
   }
@@ -141,7 +143,7 @@ DM_FN void stress_slopes(const SetStep<Scalar<R>>& set, const Sym3<R>& stress, S
   for (int a = 0; a < 3; ++a) slope[a] = tau.column(a) * force;
 }
 
-/// Those of viscous stress in the step, of gathered moments.
+/// Computes the slopes of viscous stress in the step from gathered moments.
 template <class M, class R>
 DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const SetStep<Scalar<R>>& set,
                           const typename M::template State<R>& state, const Vec3<R> (&affine_moment)[3],
@@ -153,15 +155,17 @@ DM_FN void viscous_slopes(const typename M::template Law<Scalar<R>>& law, const 
   stress_slopes(set, response.tau, set.dt, slope);
 }
 
-/// What keeps a particle that would move by `move` [cells] out of colliders: within `margin`
-/// [cells] it comes no nearer, and what is inside comes back, put_back_limit a step.
+/// Returns the displacement [cells] that keeps a particle that would move by `move` [cells] out of
+/// colliders: within `margin` [cells] it comes no nearer, and a particle inside comes back by
+/// put_back_limit a step.
 template <class R>
 DM_FN Vec3<R> put_back(const G2PResult<R>& g, const Vec3<R>& move, Scalar<R> margin) {
   using S = Scalar<R>;
-  const R zero(S(0)), towards = dot(g.away, move), place = g.clearance + towards, entered = max(-towards, zero);
+  const R zero(S(0)), towards = dot(g.clearance_gradient, move), place = g.clearance + towards,
+                      entered = max(-towards, zero);
   const R inside =
       min(max(R(S(ColliderContact::inside_margin)) - place, zero), entered + R(S(ColliderContact::put_back_limit)));
-  return g.away * max(inside, min(max(R(margin) - place, zero), entered));
+  return g.clearance_gradient * max(inside, min(max(R(margin) - place, zero), entered));
 }
 
 /// A particle's step between gather and scatter: advance the law with the step's velocity gradient,
@@ -179,18 +183,18 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   // J follows the divergence of the field that moves the particles. That of C errs by +-0.096 dx
   // v'' in turn from particle to particle of a cell, which works as a stiffness.
   if constexpr (M::info.liquid) {
-    const R each = g.excess * R(S(1.0 / 3) * set.dt / set.dx);
+    const R each = g.affine_excess * R(S(1.0 / 3) * set.dt / set.dx);
     for (int a = 0; a < 3; ++a) at.gradient(a, a) = at.gradient(a, a) - each;
   }
   if (measures<M>(set.volume_relaxation)) {
     const R open = max(open_fraction_at(u, walls) - g.blocked, R(S(VolumeCorrection::least_open_fraction)));
-    at.volume = R(set.full) * open / g.content;
+    at.volume = R(set.full) * open / g.node_content;
     if constexpr (VolumeRelaxed<M>) {
       at.inside = g.density_state.inside;
-      at.surface_filled = g.content / (g.content + g.density_state.missing);
+      at.surface_filled = g.node_content / (g.node_content + g.density_state.missing);
       at.at_rest = g.density_state.at_rest;
       const R swollen = max(at.volume * at.at_rest - R(S(1)), R(S(0)));
-      out.swollen = select(g.content > R(S(VolumeCorrection::least_content) * set.full), swollen, R(S(0)));
+      out.swollen = select(g.node_content > R(S(VolumeCorrection::least_content) * set.full), swollen, R(S(0)));
       at.strain = sqrt(fused_norm2(symmetric_part(at.gradient))) *
                   R(S(VolumeCorrection::relaxation_cells) * set.dx / set.dt * set.volume_relaxation);
     }
@@ -202,10 +206,11 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   // v_before)
   Vec3<R> v = g.v, move = g.v;
   if (set.transfer.keeps_velocity()) {
-    const Vec3<R> kept = (g.own - g.velocity_old) * R(set.transfer.blend);
+    const Vec3<R> kept = (g.own_velocity - g.velocity_old) * R(set.transfer.blend);
     v = g.v + kept;
     const R share = separated_fraction(law, state) * R(set.transfer.advance);
-    for (int a = 0; a < 3; ++a) move[a] = g.v[a] + min(max(kept[a] * share, R(-set.jump)), R(set.jump));
+    for (int a = 0; a < 3; ++a)
+      move[a] = g.v[a] + min(max(kept[a] * share, R(-set.max_own_speed)), R(set.max_own_speed));
   }
 
   const Vec3<R> start = u;
@@ -244,7 +249,7 @@ DM_FN P2GTerms<R> particle_step(const typename M::template Law<Scalar<R>>& law, 
   const R force(set.sub_cycled ? S(0) : stress_slope(set, set.dt_next));
   const Mat3<R> tau = response.tau.full();
   out.q = v * R(set.mass);
-  out.own = v;
+  out.own_velocity = v;
   for (int a = 0; a < 3; ++a) {
     const Vec3<R> momentum = momentum_slope(g.affine_moment[a], set);
     for (int i = 0; i < 3; ++i) out.slope[a][i] = mul_add(tau(i, a), force, momentum[i]);

@@ -42,9 +42,9 @@ struct DensityState {
   /// along a beyond noise, over that of a full node, times `inside`: at surfaces second differences
   /// are those of the shape. What a wave of two cells has beyond noise so falls to 1/sqrt(e).
   Vec3<R> shift;
-  R inside;   ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
-  R missing;  ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
-  R content;  ///< of the nodes, weighed
+  R inside;        ///< 1 where the nodes around are full, 0 where they lack a tenth or more beside what full ones may
+  R missing;       ///< content that the nodes at surfaces would have besides if they were full, weighed as that is
+  R node_content;  ///< of the nodes, weighed
   /// `reading_at_rest_density` here [1]; beside colliders and solids times what is read there of
   /// the density.
   R at_rest;
@@ -65,7 +65,7 @@ struct Pair {
   }
 };
 
-/// For places where only the liquid takes room.
+/// A tag for places where only the liquid takes room.
 struct NothingElse {};
 
 /// `row(i, j)`: what the nodes hold, as in gather(), and `full` what a full one does; `t`: the
@@ -77,7 +77,7 @@ DM_FN DensityState<R> density_state(const Shared<R, nx>& x, const Shared<R, ny>&
   using S = Scalar<R>;
   const R zero(S(0)), wanted = full * R(S(VolumeCorrection::full_enough)),
                       noise = full * R(S(VolumeCorrection::shift_noise));
-  // What others take counts as content.
+  // Volume that others take counts as content.
   const auto held = [&](int i, int j, const LineSpline<R>& content) __attribute__((always_inline)) {
     NodeRow<R> nodes = nodes_of(content);
     if constexpr (!std::is_same_v<TakenAt, NothingElse>) {

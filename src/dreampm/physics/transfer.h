@@ -58,12 +58,12 @@ DM_FN NodeRow<N> nodes_of(const LineSpline<N>& line) {
   return {{outer - line.slope, line.middle, outer + line.slope}};
 }
 
-/// Where a particle lies along such a line.
+/// The place of a particle along such a line.
 template <class R>
 struct LinePlace {
   R t;              ///< from the middle
-  R bend;           ///< what the value takes of the bend
-  R moment_factor;  ///< and four times the first moment
+  R bend;           ///< factor of the bend in the value
+  R moment_factor;  ///< factor of the bend in four times the first moment
 
   explicit DM_FN LinePlace(const R& from_middle) : t(from_middle) {
     using S = Scalar<R>;
@@ -245,8 +245,8 @@ DM_FN N gather_value(const Stencil<R>& s, const RowAt& row) {
                          splines_of<R>(row));
 }
 
-/// By how much 4 sum w v (x_i - x_p) along an axis exceeds the derivative of the splines' own
-/// field, sum w' v, for a bend of 1 along it: `t` as in Stencil.
+/// Returns the excess of 4 sum w v (x_i - x_p) along an axis over the derivative of the splines'
+/// own field, sum w' v, for a bend of 1 along it: `t` as in Stencil.
 template <class R>
 DM_FN R affine_excess(const R& t) {
   using S = Scalar<R>;

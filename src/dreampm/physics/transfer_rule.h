@@ -17,7 +17,8 @@ struct TransferRule {
   S advance = 0;  ///< x' = x + dt (v + advance blend (v_p - v_before)) where matter separates (law.h)
   S memory = 0;   ///< s: a step of dt keeps blend exp(-dt/memory), the same for steps of any length; 0: blend
 
-  /// What a step of dt [s] keeps of own velocities. Never nothing: the grid's are weighed by it.
+  /// Returns the share of own velocities that a step of dt [s] keeps. It is never 0, as the grid's
+  /// velocities are weighed by it.
   S kept(S dt) const { return memory > S(0) ? blend * max(exp(-dt / memory), S(1e-3)) : blend; }
   /// Particles store a velocity, and the grid the one before its forces.
   DM_FN bool keeps_velocity() const { return blend > S(0); }

@@ -21,7 +21,7 @@ struct TransferList {
 using Transfers = TransferList<Apic, Flip, Asflip>;
 using AnyTransfer = Transfers::Any;
 
-/// Whether any transfer takes this key.
+/// True if any transfer has this key.
 inline bool is_transfer_key(std::string_view key) {
   bool found = false;
   Transfers::for_each([&]<class T>() {

@@ -18,7 +18,7 @@ struct VolumeCorrection {
   /// relaxation to the next: 8 steps at cfl 0.5. Steps between measure no density, and are cheaper.
   static constexpr double relaxation_stride = 4;
 
-  // Which readings are believed.
+  // Bounds beyond which readings are not believed.
 
   /// Share of a full kernel's open part below which a measured density says nothing; it divides.
   static constexpr double least_open_fraction = 0.1;

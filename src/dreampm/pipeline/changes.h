@@ -5,7 +5,7 @@
 
 namespace dreampm {
 
-/// "render.samples: 4 -> 8", one a changed key of two texts by scene::emit_scene.
+/// "render.samples: 4 -> 8", one a changed key of two texts by scene::write_scene.
 std::vector<std::string> changed_keys(const std::string& before, const std::string& after);
 
 }  // namespace dreampm

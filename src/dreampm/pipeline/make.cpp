@@ -83,7 +83,7 @@ RunFolder simulated(const model::Scene& scene, const SceneSource& source, const 
   const auto lock = std::make_shared<RunLock>(options.folder);
   if (std::optional<RunRecord> earlier = earlier_record(options.folder)) fold_chunks(options.folder, *earlier);
   const model::Scene kept = with_kept_models(scene);
-  const std::string resolved = scene::emit_scene(kept);
+  const std::string resolved = scene::write_scene(kept);
   const fs::path scene_file = options.folder / "scene.yaml";
   if (fs::exists(scene_file))
     for (const std::string& change : changed_keys(read_file(scene_file), resolved)) info("changed: {}", change);

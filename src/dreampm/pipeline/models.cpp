@@ -82,7 +82,7 @@ model::Scene located_in(model::Scene kept, const fs::path& folder) {
 
 void write_portable_scene(const model::Scene& scene, const fs::path& file) {
   for (const auto& [path, name] : kept_names(scene)) copy_model(path, file.parent_path() / name);
-  const std::string text = scene::emit_scene(with_kept_models(scene));
+  const std::string text = scene::write_scene(with_kept_models(scene));
   if (!holds(file, text)) replace_file_text(file, text);
 }
 

@@ -146,7 +146,7 @@ class BulletContacts final : public BodyContacts {
     body.setAngularVelocity(bullet(collider.twist.spin));
     body.setDamping(0, 0);
   }
-  /// Which objects have a contact.
+  /// Returns for each object true if it has a contact.
   static std::vector<bool> touching(btCollisionDispatcher& dispatcher, std::size_t count) {
     std::vector<bool> touched(count);
     for (int m = 0; m < dispatcher.getNumManifolds(); ++m) {
@@ -205,7 +205,8 @@ class BulletContacts final : public BodyContacts {
       const Collider& collider = colliders[c];
       ContactBody& body = context_.bodies[c];
       body.collider = &collider;
-      // Of the step to come: of those on a path its beginning, which is how they stand.
+      // The fastest point in the coming step; for a collider on a path, at the step's beginning,
+      // where it stands.
       body.speed = collider.changing ? collider.fastest(room_.box, collider.time, 0) : 0;
       const Box3d bounds = collider.bounds();
       if (is_finite(bounds.min) && is_finite(bounds.max)) {

@@ -13,7 +13,7 @@ struct BodyWall {
   Vec3d point, normal;
 };
 
-/// Where bodies meet.
+/// The space in which bodies meet.
 struct BodyRoom {
   std::vector<BodyWall> walls;  ///< closed ones
   Box3d box;                    ///< m
@@ -25,8 +25,8 @@ struct BodyRoom {
 std::unique_ptr<BodyContacts> make_bullet_contacts(const std::vector<CollisionShape>& shapes, const BodyRoom& room,
                                                    BodyContacts* before = nullptr);
 
-/// Of a world with rigid bodies; null of one without. `before`: of the same world with other
-/// colliders, which may be null: what is known of meshes that stay is taken over.
+/// Makes the contacts of a world with rigid bodies; null for one without. `before`: those of the
+/// same world with other colliders, which may be null: data of meshes that stay is taken over.
 template <class R>
 std::unique_ptr<BodyContacts> make_body_contacts(const World<R>& world, BodyContacts* before = nullptr);
 

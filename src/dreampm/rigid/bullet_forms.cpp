@@ -71,7 +71,8 @@ struct MakeForm {
   }
   void operator()(const PointsShape&) const { fail_input("a cloud of points has no surface that bodies could meet"); }
 
-  /// As a body its convex hull, or by distance where that holds a hollow; else its triangles.
+  /// Adds the form of a surface: for a body its convex hull, or a form by distance where that holds
+  /// a hollow; else its triangles.
   void surface() const {
     const TriMesh& mesh = *collision.mesh;
     form.placement = {corner, {}};
@@ -109,8 +110,8 @@ Form form_of(const CollisionShape& collision, const Collider& collider, double m
   if (collider.changing) {
     form.by_distance = true;
   } else {
-    // What is a mesh by now may have been any shape: a shell about it, or one without a form of its
-    // own.
+    // A shape that is a mesh by now may have been any shape: a shell about it, or one without a
+    // form of its own.
     form.placement = placement_of(collision.shape);
     if (collision.mesh)
       MakeForm{collision, collider.rigid, corner, form}.surface();

@@ -30,7 +30,7 @@ struct Form {
   std::vector<Vec3d> hull;   ///< m, in the collider: of one by distance
 };
 
-/// Where the form of a shape stands in the shape.
+/// Returns the pose of a shape's form within the shape.
 Pose placement_of(const Shape& shape);
 
 /// `margin` [m]: half of what two bodies may be apart and still touch. `corner` [m]: from where the

@@ -1,4 +1,4 @@
-// What Bullet's callbacks know of the step that it resolves.
+// The context of Bullet's callbacks: data of the step that it resolves.
 #pragma once
 #include <cmath>
 #include <vector>
@@ -10,7 +10,7 @@ namespace dreampm {
 /// A collider or a wall, as its contacts need it.
 struct ContactBody {
   const Collider* collider = nullptr;  ///< null of a wall
-  /// In the collider [m]: points of its surface; the middle of a ball. Null where none are needed.
+  /// Points of its surface, in the collider [m]; the middle of a ball. Null where none are needed.
   const std::vector<Vec3d>* points = nullptr;
   double radius = 0;       ///< m: of a ball; 0 of others, whose points lie on the surface
   Twist before{};          ///< before the forces of the step

@@ -52,7 +52,8 @@ void ImpactWorld::prepare(btManifoldPoint& point, const btCollisionObject& a, co
   const double speed_now = dot(now(second, on_b) - now(first, on_a), normal),
                speed = dot(before(second, on_b) - before(first, on_a), normal);
   const double gives = first.restitution * second.restitution;
-  // What a surface that changes does by itself, which Bullet's objects do not know [m/s].
+  // The velocity of a changing surface in the body's frame, which Bullet's objects do not know
+  // [m/s].
   const auto own = [](const ContactBody& body, const Vec3d& at) {
     return body.collider && body.collider->changing ? body.collider->velocity(at) - body.collider->twist.at(at)
                                                     : Vec3d{};

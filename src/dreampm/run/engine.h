@@ -17,7 +17,7 @@
 
 namespace dreampm {
 
-/// As sample times [s]: velocities of every step, or of the ends of frames alone.
+/// Sample times [s] that stand for every step, and for the ends of frames alone.
 inline constexpr double always = -std::numeric_limits<double>::infinity(),
                         never = std::numeric_limits<double>::infinity();
 
@@ -27,9 +27,9 @@ class Observer {
   virtual ~Observer() = default;
   /// s: velocities are wanted of steps that end then or later.
   virtual double next_sample_time() const { return never; }
-  /// After every step.
+  /// Called after every step.
   virtual void on_step(const StepSums&) {}
-  /// After on_step of all, where the step ended a frame.
+  /// Called after on_step of all, where the step ended a frame.
   virtual void on_frame() {}
 };
 
@@ -51,15 +51,15 @@ class Engine {
   /// Velocities of the particles, in their order: of the last step that a sample time fell into or
   /// that ended a frame.
   const Motion<R>& motion() const { return motion_; }
-  /// For edits, which change it with the particles.
+  /// Returns the motion for edits, which change it with the particles.
   Motion<R>& motion() { return motion_; }
-  /// Whether `motion` is of the last step.
+  /// True if `motion` is of the last step.
   bool motion_is_current() const { return current_; }
 
   /// Makes what `fields` name current in the arrays of `world` and in `motion`: before they are
   /// read, and before an edit changes them.
   void download(MatterFields fields) { backend_->download(world_, motion_, fields); }
-  /// After an edit that changed what `fields` name there.
+  /// Must be called after an edit that changed what `fields` name there.
   void upload(MatterFields fields) { backend_->upload(world_, motion_, fields); }
   /// Sums over the particles, with the motion at hand.
   Balance balance() { return backend_->balance(world_, motion_); }
@@ -83,10 +83,10 @@ class Engine {
     motion_ = *motion;
     upload(MatterFields::motion);
   }
-  /// After an edit that brought colliders into the world or took some out; `form_grid` comes before
-  /// the next step.
+  /// Must be called after an edit that brought colliders into the world or took some out;
+  /// `form_grid` comes before the next step.
   void colliders_changed() { contacts_ = make_body_contacts(world_, contacts_.get()); }
-  /// After an edit of the world, and of `motion` with it: forms the grid anew. Where it throws,
+  /// Forms the grid anew after an edit of the world, and of `motion` with it. Where it throws,
   /// another edit may still put things right.
   void form_grid() { solver_->form_grid(world_, motion_); }
 

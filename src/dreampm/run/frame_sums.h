@@ -1,4 +1,4 @@
-// What the steps of a frame come to.
+// Sums over the steps of a frame.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,19 +8,18 @@
 
 namespace dreampm {
 
-/// What a frame's ledger row sums up over its steps; part of a checkpoint that falls within a
-/// frame.
+/// Sums of a frame's ledger row over its steps; part of a checkpoint that falls within a frame.
 struct FrameSums {
   std::uint64_t substeps = 0;
   double dt_min = 1e30, dt_max = 0;
   Limiter limiter = Limiter::frame;
-  int stages = 0;        ///< of viscosity, the most of a step
-  ImpulseSum contact;    ///< what matter received from walls and colliders
-  ImpulseSum body;       ///< and from gravity, damping and fields
-  ImpulseSum left;       ///< what left took along
-  Entered entered;       ///< what emitters gave
+  int stages = 0;        ///< largest number of viscous stages of a step
+  ImpulseSum contact;    ///< impulses from walls and colliders on matter
+  ImpulseSum body;       ///< impulses from gravity, damping and fields
+  ImpulseSum left;       ///< momentum of matter that left
+  Entered entered;       ///< matter from emitters
   double left_mass = 0;  ///< kg
-  PassEnergy lost;       ///< what the particles turned into heat; kinetic and keeping unused
+  PassEnergy lost;       ///< energies that particles turned into heat; kinetic and kept_kinetic unused
   double transfer = 0;   ///< J, of StepSums
   double damping = 0;    ///< J that damping took
   double rounding = 0;   ///< N s, of StepSums
@@ -37,9 +36,10 @@ template <class R>
 class FrameTotals final : public Observer {
  public:
   explicit FrameTotals(const Engine<R>& engine) : engine_(engine) {}
-  /// Of the frame at hand; at its end, until the next step, of the frame that ended.
+  /// Returns the sums of the present frame; at its end, until the next step, of the frame that
+  /// ended.
   const FrameSums& sums() const { return sums_; }
-  /// What a run that goes on from here adds to: nothing at the end of a frame.
+  /// Returns the sums to which a run that goes on from here adds: empty ones at the end of a frame.
   FrameSums carried() const { return ended_ ? FrameSums{} : sums_; }
   /// Particles times steps, in all.
   std::uint64_t particle_steps() const { return particle_steps_; }

@@ -13,12 +13,12 @@ namespace {
 
 double mechanical(const LedgerRow& row) { return row.kinetic + row.elastic + row.gravity; }
 
-/// Of the energy that moves and that changes its kind, what steps may put in over a row that the
-/// terms below miss: they change their length, and matter is not linear. Chosen, not derived.
+/// The share of the energy that moves and that changes its kind which may be missed by the terms
+/// below over a row: steps change their length, and matter is not linear. Chosen, not derived.
 constexpr double step_share = 0.05;
 
-/// How much of the energy of this row may come from nowhere [J]. `momentum`: the row's
-/// momentum_bound; `ulp`: what one sum may be off by rounding, of itself.
+/// Returns the bound of the energy of this row that may come from nowhere [J]. `momentum`: the
+/// row's momentum_bound; `ulp`: the relative rounding error of one sum.
 ///  - A symplectic step keeps E - dt/2 P for linear matter and constant gravity, and not the energy E; P = dE/dt is the
 ///    power of what is stored. Only steps that a scene may ask for count: longer ones explain no more.
 ///  - Where matter flows plastically, the strain on trial holds energy that stress, as it was before the step, did not
@@ -82,7 +82,7 @@ double liquid_volume(const World<R>& world) {
   return volume;
 }
 
-/// By which share of their volume at rest liquids take more than that.
+/// Returns the share of their volume at rest by which liquids take more than that.
 template <class R>
 double swollen_share(const World<R>& world, const FrameSums& s, const LedgerRow* before) {
   const double rest = liquid_volume(world);
@@ -174,8 +174,8 @@ LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>
   const double bound = s.rounding + stresses;
   row.momentum_bound = bound;
   row.energy_bound = energy_bound(world, row, before, bound, ulp);
-  // What leaves one end of a periodic axis and comes back at the other turns about another point.
-  // Of the transfers only APIC keeps angular momentum (docs/howto/transfers.md).
+  // Matter that leaves one end of a periodic axis and comes back at the other turns about another
+  // point. Of the transfers only APIC keeps angular momentum (docs/howto/transfers.md).
   const bool turns = std::none_of(world.periodic.begin(), world.periodic.end(), [](bool p) { return p; }) &&
                      std::all_of(world.sets.begin(), world.sets.end(), [](const ParticleSet<R>& set) {
                        return set.transfer.affine == 1 && !set.transfer.keeps_velocity();

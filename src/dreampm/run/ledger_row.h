@@ -20,7 +20,7 @@ template <class R>
 LedgerRow ledger_row(const World<R>& world, Backend<R>& backend, const Motion<R>& motion, const FrameSums& sums,
                      const LedgerRow* before);
 
-/// How a warning begins that a calm liquid fills more than its volume.
+/// The beginning of the warning that a calm liquid fills more than its volume.
 inline constexpr std::string_view swollen_warning_start = "liquid takes more than its volume";
 
 /// Looks for liquids that take over a tenth more than their volume while all matter is calm. Of

@@ -11,7 +11,7 @@
 
 namespace dreampm {
 
-/// What files of particles hold.
+/// The content of files of particles.
 struct ParticleContent {
   std::vector<std::string> attributes;  ///< of model::particle_attributes
   Vec3d shift{};                        ///< m, where places count from

@@ -10,7 +10,7 @@
 
 namespace dreampm {
 
-/// Of one probe, by its name.
+/// The memory of one probe, by its name.
 struct ProbeMemory {
   std::string identity;  ///< of what it measures
   std::vector<double> values;
@@ -25,17 +25,17 @@ class ProbeSet {
   ProbeSet(const model::Scene& scene, const InitialState& start, const std::string& file);
   std::size_t size() const { return all_.size(); }
   const std::string& name(std::size_t probe) const { return all_[probe].name; }
-  /// Of its rows, without the time.
+  /// Returns the names of a probe's columns, without the time.
   std::vector<std::string> columns(std::size_t probe) const { return all_[probe].probe->columns(); }
 
   /// Goes on from a time [s]. Throws InputError if a probe is not in the memories, or was another
   /// one.
   void resume(const ProbeMemories& memories, double time);
-  /// When the next one is due within a frame [s]; infinity if none is.
+  /// Returns the time of the next sample within a frame [s]; infinity if none is due.
   double next() const;
-  /// After every step.
+  /// Adds a step to the running means; after every step.
   void accumulate(const StepSums& step);
-  /// What `sample` will read at a time [s].
+  /// Returns the fields that `sample` will read at a time [s].
   MatterFields fields_due(double time, bool frame_done) const;
   /// Calls `take(probe, row)` for every probe that is due and has a row: at the end of a frame
   /// those without a rate, at the end of a step those whose sample time has come. What `fields_due`

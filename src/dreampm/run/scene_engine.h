@@ -36,7 +36,7 @@ class SceneEngine {
   Engine<R>& engine() { return engine_; }
   const Engine<R>& engine() const { return engine_; }
   ProbeSampler<R>& probes() { return probes_; }
-  /// What was assembled. Until `begin` its seeds may be changed; nothing needs them later.
+  /// Returns the assembled scene. Until `begin` its seeds may be changed; nothing needs them later.
   InitialState& start() { return start_; }
 
  private:

@@ -20,8 +20,8 @@ void check_shape(const Shape& shape, const std::string& name);
 /// that there is not.
 std::string meaning_of(std::string_view path);
 
-/// What stands behind `shape`, in `materials` and in `render.looks` of a scene file. `name` is the
-/// file's in messages, and models are looked for in its folder. Throw InputError.
+/// Functions that write the YAML of a shape, of a material and of a look, as in a scene file.
+/// `name` is the file's in messages, and models are looked for in its folder. Throw InputError.
 std::string shape_text(const Shape& shape);
 Shape parse_shape_text(std::string_view text, const std::string& name);
 model::Material parse_material_text(std::string_view text, const std::string& name);

@@ -63,7 +63,7 @@ void add_colors(Hash64& hash, const model::Scene& s) {
 
 void add_text(Hash64& hash, const YamlNode& map) { hash.add(std::string_view(write_yaml(map))); }
 
-/// What is measured changes no state, but only a new simulation measures it.
+/// Probes change no state, but only a new simulation measures with new ones.
 void add_probes(Hash64& hash, model::Scene s) {
   for (Probe& p : s.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) {
@@ -75,9 +75,9 @@ void add_probes(Hash64& hash, model::Scene s) {
 
 }  // namespace
 
-std::string flow_text(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
+std::string yaml_list(const Vec3d& v) { return fmt::format("[{}, {}, {}]", v.x, v.y, v.z); }
 
-std::string emit_scene(const model::Scene& scene) {
+std::string write_scene(const model::Scene& scene) {
   YamlNode root = YamlNode::map();
   root.put("dreampm", write_count(format_version));
   for (Entry& e : write_map(scene, scene_schema()).entries) root.entries.push_back(std::move(e));

@@ -7,18 +7,18 @@
 namespace dreampm::scene {
 
 /// The scene as YAML with every value explicit and no variants. Numbers read back exactly:
-/// parse_scene_text(emit_scene(d)) gives d again.
-std::string emit_scene(const model::Scene& scene);
+/// parse_scene_text(write_scene(d)) gives d again.
+std::string write_scene(const model::Scene& scene);
 
 /// "[x, y, z]", which a scene reads back exactly.
-std::string flow_text(const Vec3d& v);
+std::string yaml_list(const Vec3d& v);
 
 /// The parts of a run that can be redone on their own. Each hash covers what decides that part, the
 /// parts before it included: surface and render those of the simulation, video those of the render.
 enum class Part {
-  simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
-               ///< name
-  particles,   ///< and which attributes are written, and the probes
+  simulation,  ///< all that decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files
+               ///< they name
+  particles,   ///< attributes that are written, and the probes
   surface,
   render,
   video

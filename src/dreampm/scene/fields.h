@@ -18,13 +18,13 @@
 
 namespace dreampm::scene {
 
-/// What readers share.
+/// The state that readers share.
 struct Reading {
   Problems& problems;
   std::string folder;               ///< of the scene file: mesh paths are looked for here first
   std::vector<std::string> assets;  ///< names that asset:NAME may have
-  /// Where models are: beside the scene or in the working folder; in the scene's folder, as in a
-  /// run's; or where they are named, which nobody looks at.
+  /// The place of models: beside the scene or in the working folder; in the scene's folder, as in a
+  /// run's; or as named, which nobody looks at.
   enum class Models { looked_for, in_folder, as_named } models = Models::looked_for;
   std::map<std::string, model::Mark> marks{};  ///< where parts are said, by path
 };
@@ -44,7 +44,7 @@ struct Field {
   std::string otherwise = {};  ///< when it is optional, in words
   /// Writes it in any case, for the page; empty: `write` does.
   std::function<void(const T&, const std::string& key, YamlNode& map)> write_always = {};
-  bool has_default = true;  ///< whether what is written of a fresh T is what holds without the key
+  bool has_default = true;  ///< true if what is written of a fresh T is what holds without the key
   bool foreign = false;     ///< known only to be refused with a better message
 
   Field must() && {
@@ -57,7 +57,7 @@ struct Field {
     otherwise = std::move(words);
     return std::move(*this);
   }
-  /// What it means, in one sentence.
+  /// Sets the meaning, in one sentence.
   Field says(std::string words) && {
     meaning = std::move(words);
     return std::move(*this);
@@ -82,7 +82,7 @@ struct Field {
   }
 };
 
-/// Only written when the test holds; read in any case.
+/// Makes the field one that is only written when the test holds, and read in any case.
 template <class T>
 Field<T> written_when(Field<T> f, std::function<bool(const T&)> test) {
   f.write_always = f.write;
@@ -130,8 +130,8 @@ inline void not_yet(Reading& in, const Place& at, std::string_view what) {
 void check_alternatives(Problems& problems, const YamlNode& map, std::string_view path,
                         const std::vector<std::string>& known);
 
-/// What to say of a key that no table knows, called `name` in full. A decimal comma in a flow map
-/// makes one: {a: 0,5}.
+/// Returns the message for a key that no table knows, called `name` in full. A decimal comma in a
+/// flow map makes one: {a: 0,5}.
 std::string unknown_key(const YamlNode& map, const Entry& key, const std::string& name,
                         const std::vector<std::string>& known);
 

@@ -61,7 +61,7 @@ std::vector<fs::path> model_files(const fs::path& model) {
     if (!buffer.is_object() || !buffer.contains("uri") || !buffer["uri"].is_string()) continue;
     const std::string uri = buffer["uri"].get<std::string>();
     if (uri.starts_with("data:")) continue;
-    // As the mesh's reader finds it: a file may be called what others would write as an escape.
+    // The URI as written and decoded: a file may be called what others would write as an escape.
     const fs::path as_written = model.parent_path() / uri, decoded = model.parent_path() / percent_decoded(uri);
     files.push_back(fs::is_regular_file(as_written) ? as_written : decoded);
     if (!fs::is_regular_file(files.back())) fail_input("{}: its buffer \"{}\" is not there", model.string(), uri);

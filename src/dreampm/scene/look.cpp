@@ -200,7 +200,7 @@ const Schema<Look>& look_schema() {
 
 namespace {
 
-/// What a look has where the scene says its type and no more.
+/// Sets the values that a look has where the scene gives its type alone.
 void give_defaults(Look& look, const YamlNode& given) {
   struct Default {
     LookType type;

@@ -77,7 +77,8 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
 
 namespace {
 
-/// What a variant may not hold; its other keys are checked with the scene that it changes.
+/// Checks the keys that a variant may not hold; its other keys are checked with the scene that it
+/// changes.
 void check_variants(Reading& in, const YamlNode& variants) {
   read_named(in, variants, "variants", [&](const Entry& e, const std::string& path) {
     if (!expect_map(in.problems, e.value, path)) return;
@@ -118,7 +119,8 @@ bool can_be_checked(Problems& problems, const YamlNode& base, std::size_t varian
   return false;
 }
 
-/// By place; what has none comes first. Problems of one place keep their order.
+/// Returns the problems by place; those without one come first. Problems of one place keep their
+/// order.
 std::vector<Problem> sorted(const std::vector<Problem>& list) {
   const auto before = [](const Problem& a, const Problem& b) {
     return std::pair(a.line, a.column) < std::pair(b.line, b.column);

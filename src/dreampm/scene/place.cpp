@@ -1,5 +1,5 @@
-// Where a shape stands and how large it is: fit, scale, rotate. And what sections share: turns,
-// files, boxes.
+// Placement and size of shapes: fit, scale, rotate. And readers that sections share: turns, files,
+// boxes.
 #include <filesystem>
 
 #include "dreampm/scene/sections.h"

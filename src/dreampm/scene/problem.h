@@ -1,4 +1,4 @@
-// What is wrong with a scene, and where.
+// The faults of a scene, with their places in the file.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace dreampm::scene {
 
-/// Where a value was written: 1-based. Line 0: the file as a whole. A value given on the command
+/// The place of a value in text: 1-based. Line 0: the file as a whole. A value given on the command
 /// line has `file` = "--set PATH=VALUE" and line 0.
 struct Place {
   std::string file;

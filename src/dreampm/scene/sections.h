@@ -87,7 +87,7 @@ Field<T> material_name(const std::vector<Material>& materials, std::string T::* 
 /// the working folder; that of a run in its folder alone. Reports one that is nowhere.
 std::string find_file(Reading& in, const YamlNode& n, const std::string& path, const std::string& name);
 
-/// Whether a shape is a sequence of meshes, which read_sequence reads.
+/// True if a shape is a sequence of meshes, which read_sequence reads.
 bool is_sequence(const YamlNode& shape);
 void read_sequence(Reading& in, const YamlNode& node, const std::string& path, MeshSequence& out);
 YamlNode write_sequence(const MeshSequence& sequence);
@@ -136,7 +136,7 @@ void read_sinks(Reading& in, const YamlNode& node, model::Scene& out);
 /// Rigid bodies: colliders of the scene.
 void read_rigid(Reading& in, const YamlNode& node, model::Scene& out);
 YamlNode write_rigid(const model::Scene& scene);
-/// What holds matter and moves it: colliders of the scene that are not drawn.
+/// Reads pins, which hold matter and move it: colliders of the scene that are not drawn.
 void read_pins(Reading& in, const YamlNode& node, model::Scene& out);
 YamlNode write_pins(const model::Scene& scene);
 void read_fields(Reading& in, const YamlNode& node, model::Scene& out);
@@ -150,7 +150,7 @@ YamlNode write_sinks(const model::Scene& scene);
 YamlNode write_fields(const model::Scene& scene);
 YamlNode write_probes(const model::Scene& scene);
 
-/// What these sections take.
+/// Descriptions of the keys of these sections.
 ValueInfo materials_info();
 ValueInfo bodies_info();
 ValueInfo colliders_info();
@@ -161,7 +161,7 @@ ValueInfo pins_info();
 ValueInfo fields_info();
 ValueInfo probes_info();
 
-/// Over the look that holds without it.
+/// Reads a look over the one that holds without it.
 void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out);
 /// Gives every material and collider its look: the one in the map `render` (or null), else
 /// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks

@@ -58,7 +58,7 @@ const Schema<PlaneShape>& plane_schema() {
   return schema;
 }
 
-/// Of meshes and height fields; each writes its own.
+/// Returns a predicate for meshes or for height fields; each writes its own.
 template <bool heights>
 std::function<bool(const Shape&)> is_mesh() {
   return [](const Shape& s) {
@@ -350,7 +350,7 @@ bool read_form(Reading& in, const YamlNode& node, const std::string& path, Shape
   return true;
 }
 
-/// Whether the map says where its form lies; combinations and meshes lie somewhere by themselves.
+/// True if the map gives a place for its form; combinations and meshes have one by themselves.
 bool lies_somewhere(const YamlNode& node) {
   if (node.find("center")) return true;
   if (const YamlNode* box = node.find("box")) return box->find("min") || box->find("max");

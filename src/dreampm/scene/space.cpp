@@ -13,7 +13,7 @@ struct WallGroup {
   const char* key;
   std::vector<int> walls;  ///< as Side numbers them
 };
-/// From general to special: a later one wins, key by key.
+/// The groups of walls from general to special: a later one wins, key by key.
 const std::vector<WallGroup>& wall_groups() {
   static const std::vector<WallGroup> groups{
       {"all", {0, 1, 2, 3, 4, 5}},
@@ -235,7 +235,7 @@ Field<Time> fixed_dt() {
   return f;
 }
 
-/// Before `cfl`, whose range and default it sets.
+/// The field `solver`, before `cfl`, whose range and default it sets.
 Field<Time> solver() {
   Field<Time> f = choice("solver", &Time::solver, {"explicit", "projection"});
   f.read = [plain = f.read](Reading& in, const YamlNode& n, const std::string& path, Time& out) {

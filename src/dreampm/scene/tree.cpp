@@ -30,9 +30,9 @@ class Documents final : public YAML::EventHandler {
     if (parser.HandleNextDocument(*this)) parser.HandleNextDocument(*this);
   }
   bool has_second() const { return starts_.size() > 1; }
-  /// Where its first value stands.
+  /// Returns the place of its first value.
   const YAML::Mark& second() const { return second_; }
-  /// Whether nothing was taken of the text: the second begins where the first did.
+  /// True if no text was taken: the second begins where the first did.
   bool none_begins() const { return has_second() && starts_[0].pos == starts_[1].pos; }
 
   void OnDocumentStart(const YAML::Mark& at) override { starts_.push_back(at); }

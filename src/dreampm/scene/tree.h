@@ -62,7 +62,7 @@ const std::vector<std::string>& shape_forms();
 /// The keys of a container that are not those of its hollow.
 const std::vector<std::string>& container_keys();
 
-/// As YAML text; small maps and all lists on one line.
+/// Returns the map as YAML text; small maps and all lists on one line.
 std::string write_yaml(const YamlNode& map);
 
 }  // namespace dreampm::scene

@@ -1,4 +1,4 @@
-// What the keys of a scene take, as data. The tables of the sections (fields.h) make it, and
+// The values that keys of a scene take, as data. The tables of the sections (fields.h) make it, and
 // `dreampm schema` prints it: as a page, and as a JSON Schema.
 #pragma once
 #include <cstdint>
@@ -113,7 +113,7 @@ MapInfo scene_info();
 /// A help text as a sentence: with a capital and a full stop.
 std::string sentence(std::string_view help);
 
-/// What names of a scene look like, as a regular expression.
+/// The pattern of names in a scene, a regular expression.
 inline constexpr const char* good_name_pattern = "^[A-Za-z0-9][A-Za-z0-9_-]{0,63}$";
 
 }  // namespace dreampm::scene

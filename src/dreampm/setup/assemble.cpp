@@ -49,7 +49,7 @@ void check_fits_memory(const model::Body& body, const model::Scene& scene, const
         static_cast<double>(available) / (1 << 30));
 }
 
-/// What is said of matter of a body that starts inside of a collider; an error if it is one.
+/// Returns the message for matter of a body that starts inside of a collider, if it is an error.
 std::optional<std::string> within_collider(const model::Scene& scene, std::size_t b, std::size_t c,
                                            const Overlap& overlap, const std::string& file, InitialState& out) {
   if (overlap.particles == 0) return std::nullopt;
@@ -79,7 +79,7 @@ std::string too_much(std::size_t particles, std::uint64_t bytes, std::uint64_t a
                      particles, static_cast<double>(bytes) / (1 << 30), static_cast<double>(available) / (1 << 30));
 }
 
-/// What the scene's start says; nothing without one.
+/// Returns the data of the scene's start; nothing without one.
 std::optional<StartInfo> start_of(const model::Scene& scene, const std::string& file,
                                   std::vector<std::string>& errors) {
   if (scene.start.empty()) return std::nullopt;
@@ -202,7 +202,7 @@ void Assembly::place_colliders(std::span<const Collider> standing) {
 void Assembly::note_what_is_there(bool at_the_start) {
   for (const auto& lines : {files_.warnings(), volumes_.warnings()})
     out_.warnings.insert(out_.warnings.end(), lines.begin(), lines.end());
-  // What is said of colliders was said when they came in.
+  // Messages about colliders were given when they came in.
   if (!at_the_start) return;
   for (auto& note : notes_on(scene_, file_, files_)) out_.notes.push_back(std::move(note));
 }
@@ -316,7 +316,7 @@ InitialState assemble(const model::Scene& scene, const std::string& file, std::s
   assembly.place_colliders(standing);
   assembly.refuse();
   assembly.note_what_is_there(standing.empty());
-  // Of colliders that stand already only matter comes.
+  // Matter alone is added to colliders that stand already.
   assembly.set_up_world(standing.empty());
   assembly.cut_bodies();
   assembly.check_pools();

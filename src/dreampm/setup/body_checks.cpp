@@ -27,7 +27,7 @@ double shape_volume(const Shape& shape, const Region& region, double spacing, co
   return std::max({size.x, size.y, size.z}) < most_along * spacing ? region_volume(region, spacing) : 0;
 }
 
-/// Whether particles of that spacing hold the volume of the shape, with a margin.
+/// True if particles of that spacing hold the volume of the shape, with a margin.
 bool shows(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes) {
   try {
     const auto region = make_region(shape, spacing, meshes.regions());
@@ -40,9 +40,9 @@ bool shows(const Shape& shape, double spacing, const Sampling& sampling, const M
   }
 }
 
-/// By which part of its volume particles may be off before a figure means anything. In a lump of up
-/// to six rows along each axis rows are whole, so that half a row may be too many or too few; thin
-/// bodies are no lumps.
+/// Returns the part of its volume by which particles may be off before a figure means anything. In
+/// a lump of up to six rows along each axis rows are whole, so that half a row may be too many or
+/// too few; thin bodies are no lumps.
 double slack_of(double holds, double should, const Vec3d& size, double spacing) {
   constexpr double few = 216, lump = 0.3;  // particles; the least part of the bounds, of which a ball fills 0.52
   const double particle = spacing * spacing * spacing;
@@ -59,7 +59,7 @@ bool has_mesh(const Shape& shape) {
   return std::holds_alternative<MeshShape>(shape.form);
 }
 
-/// How much work a try takes, in cells that are asked for a distance: for a mesh those in a band
+/// Returns the work of a try, in cells that are asked for a distance: for a mesh those in a band
 /// along its area, since its field has to be made first; for other shapes those of the bounds.
 double work_of(const Shape& shape, double spacing, const Meshes& meshes) {
   if (const auto* m = std::get_if<MeshShape>(&shape.form)) return 8 * meshes.look(*m).area / (spacing * spacing);

@@ -1,4 +1,4 @@
-// Whether a body's particles show the shape that they fill, and what would.
+// Checks of bodies: whether particles show the shape that they fill, and which spacing would.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,7 +18,7 @@ namespace dreampm {
 /// show a small mesh.
 Box3d shape_bounds(const Shape& shape, double spacing, const Meshes& meshes);
 
-/// How a body is filled.
+/// The pattern and seed with which a body is filled.
 struct Sampling {
   Pattern pattern;
   std::uint64_t seed;
@@ -35,13 +35,13 @@ std::shared_ptr<const Region> body_region(const Shape& shape, double spacing, co
 /// known and trying costs too much.
 std::string finer_spacing(const Shape& shape, double spacing, const Sampling& sampling, const Meshes& meshes);
 
-/// What is wrong with where a body's points lie, a line a closed wall; empty if nothing. `file`
-/// names the scene.
+/// Returns the faults in the places of a body's points, a line a closed wall; empty if there are
+/// none. `file` names the scene.
 std::vector<std::string> outside_walls(const model::Body& body, const std::vector<Vec3d>& points,
                                        const model::Scene& scene, const std::string& file);
 
-/// What is said of matter that lies beyond open sides, where it is taken out at once: an error
-/// where no point is left, else a warning, with the volume, to `warnings`.
+/// Returns the message for matter that lies beyond open sides, where it is taken out at once: an
+/// error where no point is left, else a warning, with the volume, to `warnings`.
 std::optional<std::string> beyond_open_sides(const model::Body& body, const std::vector<Vec3d>& points,
                                              const model::Scene& scene, const std::string& file,
                                              std::vector<std::string>& warnings);

@@ -139,7 +139,7 @@ TriMesh drawn(const Shape& shape, double voxel, const Box3d& room, const Vec3d& 
     voxel = std::min(voxel, c->wall / 2);
   const auto region = make_region(shape, voxel, mesh_regions());
   if (!std::holds_alternative<PlaneShape>(shape.form)) {
-    // What is small has as many voxels as its own edges need: a pipe's rim is no saw.
+    // The voxels of a small object follow from its own edges: a pipe's rim must not be jagged.
     const double longest = longest_side(within(region->bounds(), room));
     return contoured(*region, std::clamp(voxel, longest / 200, longest / 50), room, shift);
   }

@@ -13,8 +13,8 @@
 namespace dreampm {
 namespace {
 
-/// What would make the voxels of a shell a third of `width` [m]. They are a third of its thickness,
-/// or of a cell where that is less.
+/// Returns the advice that would make the voxels of a shell a third of `width` [m]. They are a
+/// third of its thickness, or of a cell where that is less.
 std::string coarser(double width, double thickness, const model::Space& space) {
   if (width <= space.dx()) return fmt::format("a thickness of {:.3g} m would do", width);
   return fmt::format("a space.spacing of {:.3g} m{} would do", space.spacing * width / space.dx(),
@@ -34,7 +34,7 @@ std::shared_ptr<const Region> collider_region(const model::Collider& collider, c
   const double dx = space.dx();
   const double thickness = *collider.thickness;
   try {
-    // As far as the distances of other meshes reach where a cell is two spacings.
+    // The reach is as far as the distances of other meshes where a cell is two spacings.
     return shell_region(collider.shape, thickness, collider.voxel.value_or(std::min(thickness, dx) / 3), 1.5 * dx,
                         meshes);
   } catch (const ShellTooLarge& e) {
@@ -85,7 +85,7 @@ void Overlap::operator+=(const Overlap& other) {
 
 namespace {
 
-/// How deep points lie in a collider [m], where it and they are repeated.
+/// The depth of points in a collider [m], where it and they are repeated.
 template <class R>
 class Depth {
  public:

@@ -14,12 +14,12 @@
 
 namespace dreampm {
 
-/// What a collider takes of space: the inside of its shape, or the shell about its surface if it
-/// has a thickness.
+/// Returns the region that a collider fills: the inside of its shape, or the shell about its
+/// surface if it has a thickness.
 std::shared_ptr<const Region> collider_region(const model::Collider& collider, const model::Space& space,
                                               const Meshes& meshes);
 
-/// Of a collider that is a sequence of meshes; else null.
+/// Returns the sequence of a collider that is one; else null.
 std::shared_ptr<const MeshSequence> mesh_sequence(const model::Collider& collider, const model::Space& space);
 
 /// The motion that the scene gives a shape; null of one that stands. Without `about` the middle of
@@ -31,17 +31,17 @@ std::shared_ptr<const MotionPath> motion_path(const std::optional<model::Motion>
 /// what cannot be read or encloses nothing.
 Collider make_collider(const model::Collider& given, const model::Scene& scene, double time, const Meshes& meshes);
 
-/// How much of a body's matter lies inside of a collider.
+/// The part of a body's matter that lies inside of a collider.
 struct Overlap {
   std::size_t particles = 0;
   double depth = 0;  ///< m, of the deepest particle
   void operator+=(const Overlap& other);
 };
-/// Of collider `c` of the world, whose box was laid. Points on a face are not inside. On periodic
-/// axes both the collider and the points are where they are repeated, too.
+/// Returns the overlap of points with collider `c` of the world, whose box was laid. Points on a
+/// face are not inside. On periodic axes both the collider and the points are repeated.
 template <class R>
 Overlap matter_inside(const std::vector<Vec3d>& points, const World<R>& world, std::size_t c);
-/// Of each point whether it lies inside of one of these colliders of the world.
+/// Returns for each point true if it lies inside of one of these colliders of the world.
 template <class R>
 std::vector<bool> are_inside(const std::vector<Vec3d>& points, const World<R>& world,
                              const std::vector<std::size_t>& colliders);

@@ -1,4 +1,4 @@
-// Whether a scene's fixed time step can work.
+// Checks of a scene's fixed time step.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace dreampm {
 
-/// What is wrong with a time.dt that the solver would not choose; empty if nothing is.
+/// Returns the fault of a time.dt that the solver would not choose; empty if there is none.
 template <class R>
 std::string too_many_stages(const World<R>& world);
 

@@ -13,7 +13,8 @@
 namespace dreampm {
 namespace {
 
-/// Whether the shape of an emitter that moves leaves the box at a key of its motion.
+/// Returns the fault of an emitter whose shape leaves the box at a key of its motion; empty if
+/// there is none.
 std::string leaves(const World<double>& world, const model::Space& space, const Emitter& emitter) {
   const Box3d own = emitter.shape->bounds();
   const double slack = 1e-6 * world.dx;
@@ -31,7 +32,8 @@ std::string leaves(const World<double>& world, const model::Space& space, const 
   return {};
 }
 
-/// Whether a region reaches out of the box, or into a collider.
+/// Returns the fault of a region that reaches out of the box, or into a collider; empty if there is
+/// none.
 std::string misplaced(const World<double>& world, const model::Space& space, const Region& region) {
   const Box3d box = region.bounds();
   const double slack = 1e-6 * world.dx;

@@ -1,4 +1,4 @@
-// What a scene says that has no effect, or another one than its author may think.
+// Notes on settings of a scene that have no effect, or another one than its author may expect.
 #pragma once
 #include <string>
 #include <vector>

@@ -1,4 +1,4 @@
-// What a projection cannot do.
+// The limits of the projection: scenes that it refuses.
 #pragma once
 #include <string>
 #include <vector>

@@ -44,7 +44,7 @@ MassSums mass_sums(const Region& region) {
   Vec3d first{};
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;  // second moments
   const auto middle_of = [&](double i, double j, double k) { return box.min + Vec3d{i, j, k} * step; };
-  // Of a group of cells that no surface comes near, one distance says all.
+  // The width of a group of cells: where no surface comes near, one distance stands for the group.
   constexpr int group = 4;
   const double far = width + 0.5 * group * length(step) * steepest;
   const auto whole_part = [&](int i, int j, int k) -> std::optional<double> {
@@ -86,7 +86,7 @@ MassSums mass_sums(const Region& region) {
   return sums;
 }
 
-/// How deep a body lies in another collider [m], by samples over its bounds.
+/// Returns the depth of a body in another collider [m], by samples over its bounds.
 double depth_in(const Collider& body, const Collider& other) {
   constexpr int samples = 20;
   const Box3d box = body.bounds();

@@ -9,7 +9,8 @@
 
 namespace dreampm {
 
-/// What bodies meet a collider with. Throws InputError for a mesh that cannot be read.
+/// Returns the shape with which bodies meet a collider. Throws InputError for a mesh that cannot be
+/// read.
 CollisionShape collision_shape(const model::Collider& given, const model::Space& space);
 
 /// Makes collider `c` of the world a rigid body: mass, center and inertia of its shape, its motion
@@ -18,8 +19,8 @@ template <class R>
 void make_rigid(World<R>& world, std::size_t c, const model::Collider& given, const model::Space& space,
                 std::vector<std::string>& errors);
 
-/// What is wrong where a rigid body begins inside of another collider that it should meet; both
-/// numbers are of colliders.
+/// Returns the fault of a rigid body that begins inside of another collider that it should meet;
+/// both numbers are of colliders.
 template <class R>
 std::optional<std::string> starts_inside(const World<R>& world, std::size_t body, std::size_t other);
 

@@ -1,4 +1,4 @@
-// What a scene's `start` names: a moment of a simulation, from which another one goes on.
+// The `start` of a scene: a moment of a simulation, from which another one goes on.
 #pragma once
 #include <filesystem>
 #include <string>
@@ -13,7 +13,7 @@ namespace dreampm {
 /// The format of the archive of a moment that a scene may start from.
 inline constexpr const char* start_format = "dreampm-start";
 
-/// What a file of a moment says, without its particles.
+/// The content of a file of a moment, without its particles.
 struct StartInfo {
   int frame = 1;
   double time = 0;                                             ///< s
@@ -21,7 +21,7 @@ struct StartInfo {
   Vec3d momentum{};                                            ///< kg m/s
   ExpectedSpeed expected;                                      ///< that liquids were made stiff for
 
-  /// Of a material; 0 where it is not there.
+  /// Returns the number of particles of a material; 0 where it is not there.
   std::size_t count(std::string_view material) const;
 };
 /// Throws InputError for what is no such file.

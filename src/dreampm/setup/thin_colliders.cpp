@@ -176,7 +176,8 @@ class Search {
     out.push_back({0.5 * (from + to), thickness});
   }
 
-  /// How far it is from a place on the surface straight to the other side; at most about a cell.
+  /// Returns the distance from a place on the surface straight to the other side; at most about a
+  /// cell.
   double through(const Vec3d& p, const Vec3d& normal) const {
     const auto distance = [&](double t) { return shape_.distance(p - normal * t); };
     const double least = 1e-3 * dx_;
@@ -189,7 +190,7 @@ class Search {
     return t;
   }
 
-  /// Whether a closed wall or another collider covers the place.
+  /// True if a closed wall or another collider covers the place.
   bool is_covered(const Vec3d& p) const {
     for (int a = 0; a < 3; ++a) {
       const auto side = static_cast<std::size_t>(2 * a);

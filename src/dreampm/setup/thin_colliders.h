@@ -18,10 +18,10 @@ struct ThinPlace {
   Vec3d at;          ///< m, in the middle of the wall
 };
 
-/// Where collider `c` of the world is thinnest, if it is thinner than thinnest_wall() in a place
-/// more than a cell wide that matter can touch from both sides: one that a closed wall of the space
-/// or another collider covers is part of something thicker. Lines along the three axes, half a cell
-/// apart or, in very large colliders, more, look for it.
+/// Returns the thinnest place of collider `c` of the world, if it is thinner than thinnest_wall()
+/// in a place more than a cell wide that matter can touch from both sides: one that a closed wall
+/// of the space or another collider covers is part of something thicker. Lines along the three
+/// axes, half a cell apart or, in very large colliders, more, look for it.
 std::optional<ThinPlace> thin_place(const World<double>& world, std::size_t c);
 
 /// A line for each collider of the world with a thin place, with the spacing that would do.

@@ -1,4 +1,5 @@
-// What a set of particles takes from its material, and what follows from the speed of a scene.
+// Particle sets from materials: the parameters that a set takes, and limits that follow from the
+// speed of a scene.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -38,7 +38,7 @@ constexpr std::size_t clock_index(std::string_view name) {
   return static_cast<std::size_t>(std::find(clock_names.begin(), clock_names.end(), name) - clock_names.begin());
 }
 
-/// Whether a file has to have the array of that member: the others are in it only where they are
+/// True if a file has to have the array of that member: the others are in it only where they are
 /// not empty.
 template <class F, class Owner>
 bool required(const F& field, const Owner& owner) {
@@ -104,7 +104,7 @@ class WorldWriter {
   void put(const std::string& name, const std::vector<ParticleSet<R>>& sets) {
     for (const ParticleSet<R>& set : sets) members(name + "/" + set.name + "/", set, set);
   }
-  /// Those that have moved: where the others stand is in the scene.
+  /// Writes the poses of colliders that have moved: those of the others are in the scene.
   void put(const std::string& name, const std::vector<Collider>& colliders) {
     for (const Collider& c : colliders) {
       if (!c.moves()) continue;
@@ -185,7 +185,7 @@ class WorldReader {
   void get(const std::string& name, T& number) {
     number = static_cast<T>(from_.value<decltype(stored(number))>(name));
   }
-  /// As many as there are.
+  /// Reads the whole array.
   void get(const std::string& name, LargeVector<R>& numbers) {
     const auto stored_ones = from_.read<R>(name);
     numbers.assign(stored_ones.begin(), stored_ones.end());
@@ -222,7 +222,7 @@ class WorldReader {
       c.pose = pose_from(from_.read<double>(its + "/pose", 7));
       c.surface_pose = pose_from(from_.read<double>(its + "/surface_pose", 7));
       const auto t = from_.read<double>(its + "/twist", 9);
-      // That of one that a program added: a scene says none.
+      // The slack of a collider that a program added: a scene has none.
       c.slack = from_.has(its + "/slack") ? from_.read<double>(its + "/slack", 1).front() : Collider::settle_distance;
       if (c.changing) {
         const auto times = from_.read<double>(its + "/time", 2);

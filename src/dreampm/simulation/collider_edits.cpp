@@ -92,7 +92,7 @@ void put_in(Simulation::Impl& impl, const Scene& next, std::string_view name, co
     const Meshes files(Meshes::Say::keep);
     engine.download(MatterFields::all);
     World<R>& world = engine.world();
-    // What reads files comes first: it may throw.
+    // Calls that read files come first: they may throw.
     Newcomer newcomer{make_collider(given, scene, world.time, files), {}};
     std::vector<CollisionShape> of_all;  // where it is the first rigid body
     if (!world.collision.empty())
@@ -172,7 +172,7 @@ void Simulation::add(const model::Collider& collider, const std::optional<model:
   if (collider.pin || collider.holds)
     fail_input("{} holds the matter that a scene begins with: give it with the scene, or set a brush", collider.name);
   const Scene next = impl_->edited([&](model::Scene& scene) {
-    // As a scene file has them: colliders, rigid bodies, pins.
+    // The order of colliders in a scene file: colliders, rigid bodies, pins.
     const auto kind = [](const model::Collider& c) { return c.pin ? 2 : c.rigid ? 1 : 0; };
     const auto before = std::find_if(scene.colliders.begin(), scene.colliders.end(),
                                      [&](const model::Collider& c) { return kind(c) > kind(collider); });

@@ -26,19 +26,19 @@ constexpr std::uint32_t parts = 8;
 constexpr std::array<std::string_view, 9> gradient_names{"f_00", "f_01", "f_02", "f_10", "f_11",
                                                          "f_12", "f_20", "f_21", "f_22"};
 
-/// How particle `p` is deformed; not at all where its material does not keep that.
+/// Returns the deformation of particle `p`; identity where its material does not keep that.
 template <class R>
 Mat3d deformation(const ParticleSetView<R>& particles, std::string_view material, std::size_t p) {
   if (!find_column(material, gradient_names.front())) return Mat3d::identity();
   Mat3d f;
   for (int k = 0; k < 9; ++k)
     f(k / 3, k % 3) = static_cast<double>(particles.column(gradient_names[static_cast<std::size_t>(k)])[p]);
-  // What is drawn out that far is one thread, and no cube.
+  // Matter drawn out farther than this is one thread, and no cube.
   constexpr double most = 4;
   return norm2(f) < most * most ? f : Mat3d::identity();
 }
 
-/// Of a half of an edge, from the middle of a particle's cube.
+/// Returns the middle of an eighth of a particle's cube, from the cube's middle [half edges].
 Vec3d corner(std::uint32_t part) { return {part & 1 ? 0.5 : -0.5, part & 2 ? 0.5 : -0.5, part & 4 ? 0.5 : -0.5}; }
 
 template <class R>

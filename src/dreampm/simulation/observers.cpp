@@ -1,4 +1,4 @@
-// What is attached to a simulation and writes files of it.
+// Observers attached to a simulation, which write files of it.
 #include "dreampm/observers.h"
 
 #include <algorithm>

@@ -10,7 +10,7 @@
 namespace dreampm {
 namespace {
 
-/// Of a ray from `origin` along a unit vector, the part that is in a box [m]; empty: it misses.
+/// The part of a ray from `origin` along a unit vector that is in a box [m]; empty: it misses.
 struct Part {
   double from, to;
   bool empty() const { return !(from <= to); }

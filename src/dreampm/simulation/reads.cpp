@@ -1,4 +1,4 @@
-// What can be read of a simulation, beside what steps give.
+// The read side of a simulation, beside the results of steps.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -41,7 +41,7 @@ const Param& param_of(const model::Material& material, std::string_view key) {
 struct Attribute {
   std::string_view name, unit;
 };
-/// That particles of all materials have.
+/// The attributes that particles of all materials have.
 constexpr std::array<Attribute, 6> common_attributes{
     {{"f", "1"}, {"j", "1"}, {"jp", "1"}, {"density", "kg/m^3"}, {"pressure", "Pa"}, {"velocity_gradient", "1/s"}}};
 

@@ -50,7 +50,7 @@ void Simulation::Impl::save(const std::filesystem::path& file) const {
   save_moment(moment);
   // Beside the scene, where it is looked for first.
   now.start = moment.filename().string();
-  replace_file_text(file, scene::emit_scene(now));
+  replace_file_text(file, scene::write_scene(now));
 }
 
 void Simulation::Impl::save_moment(const std::filesystem::path& file) const {

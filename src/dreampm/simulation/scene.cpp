@@ -65,7 +65,7 @@ std::vector<std::string> Scene::materials() const {
   return names;
 }
 
-std::string Scene::yaml() const { return scene::emit_scene(data_->model); }
+std::string Scene::yaml() const { return scene::write_scene(data_->model); }
 
 Scene Scene::with(const std::vector<std::string>& set) const { return parse_scene(yaml(), file(), {"", set}); }
 

@@ -1,4 +1,4 @@
-// What a Simulation is made of. For the files of this module alone.
+// The parts of a Simulation. For the files of this module alone.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -20,14 +20,14 @@
 
 namespace dreampm {
 
-/// What edits brought in and took out, in all.
+/// The totals of matter that edits brought in and took out.
 struct EditSums {
   std::uint64_t entered = 0, removed = 0;     ///< particles
   double entered_mass = 0, removed_mass = 0;  ///< kg
   Vec3d entered_momentum{}, removed_momentum{};
 };
 
-/// What a Simulation is beside its world.
+/// The state of a Simulation beside its world.
 struct SimulationState {
   Scene scene;  ///< with all edits so far
   std::vector<BodyRange> bodies;
@@ -141,7 +141,7 @@ struct Simulation::Impl {
     return std::get<std::unique_ptr<SceneEngine<R>>>(scene_)->probes().set();
   }
 
-  /// As Simulation::save.
+  /// Implements Simulation::save.
   void save(const std::filesystem::path& file) const;
   void save_moment(const std::filesystem::path& file) const;
 
@@ -153,7 +153,7 @@ struct Simulation::Impl {
   };
   std::vector<AttachedFiles> attached;
   void attach(OpenObserver open);
-  /// After the world was replaced by that of another moment.
+  /// Must be called after the world was replaced by that of another moment.
   void reopen_attached();
   /// Goes on with the files of another simulation.
   void take_attached(const Impl& from);
@@ -178,7 +178,7 @@ struct Simulation::Impl {
   };
   /// The particles of material m as they are now.
   std::shared_ptr<const View> view(std::size_t m) const;
-  /// By material, as they were asked for last; empty after a step or an edit.
+  /// The last views asked for, by material; empty after a step or an edit.
   mutable std::map<std::size_t, std::shared_ptr<const View>> views;
   mutable std::optional<ParticleFrame> frame_;
 

@@ -10,7 +10,7 @@
 namespace dreampm {
 namespace {
 
-/// Whether there will be matter of the set.
+/// True if emitters will add matter to the set.
 template <class R>
 bool is_fed(const World<R>& world, const ParticleSet<R>& set) {
   return std::any_of(world.emitters.begin(), world.emitters.end(),
@@ -27,13 +27,13 @@ double shock_speed(const World<R>& world, double speed) {
   return fastest;
 }
 
-/// What bounds steps by matter as it is.
+/// The bounds of a step that follow from matter as it is.
 struct MatterBounds {
   double wave;       ///< m/s
   double viscosity;  ///< m^2/s
 };
-/// Of the last pass, and of matter at rest that comes in up to `ahead` [s] from now as the first of
-/// its set: it is moved by the step that was chosen before it came.
+/// Returns the bounds of the last pass, and of matter at rest that comes in up to `ahead` [s] from
+/// now as the first of its set: a step that was chosen before it came moves it.
 template <class R>
 MatterBounds matter_bounds(const World<R>& world, double ahead) {
   MatterBounds bounds{world.wave_speed, world.viscosity};
@@ -49,7 +49,8 @@ MatterBounds matter_bounds(const World<R>& world, double ahead) {
   return bounds;
 }
 
-/// Whether steps may be longer than explicit viscosity allows: of no law that keeps it to itself.
+/// True if steps may be longer than explicit viscosity allows: all laws leave their viscosity to
+/// sub-cycles.
 template <class R>
 bool may_sub_cycle(const World<R>& world) {
   bool may = world.settings.sub_cycles;

@@ -9,12 +9,12 @@ namespace dreampm {
 template <class R>
 double frame_end(const World<R>& world);
 
-/// What a step leaves of its frame.
+/// The rest of a frame after a step.
 struct RestOfFrame {
-  bool done;    ///< whether the step ends the frame
+  bool done;    ///< true if the step ends the frame
   double left;  ///< s: from the end of the step to that of the frame, or of the next frame where the step ends one
 };
-/// After a step of `dt` [s] from now.
+/// Returns the rest of the frame after a step of `dt` [s] from now.
 template <class R>
 RestOfFrame rest_of_frame(const World<R>& world, double dt);
 
@@ -23,7 +23,7 @@ RestOfFrame rest_of_frame(const World<R>& world, double dt);
 template <class R>
 void split_frame(World<R>& world, const StepBound& bound, double left);
 
-/// After a step of `dt` [s]: what is counted and how late it is.
+/// Advances the clock by a step of `dt` [s]: counts and time.
 template <class R>
 void advance_clock(World<R>& world, double dt, bool frame_done);
 
@@ -38,8 +38,8 @@ void choose_dt(World<R>& world, double node_speed, double left);
 template <class R>
 double longest_stable_dt(const World<R>& world, double node_speed);
 
-/// Whether the step to come, as it was chosen, is stable for matter at `speed` [m/s] too: by what
-/// the largest cfl of scenes allows.
+/// True if the coming step, as chosen, is stable for matter at `speed` [m/s] too, at the largest
+/// cfl of scenes.
 template <class R>
 bool step_suits(const World<R>& world, double speed);
 

@@ -132,7 +132,7 @@ void EmissionPattern::for_entering(double moved_before, double moved, bool first
   const double move = moved - moved_before;
   const Vec3d half = (half_ + Vec3d{move, 0, 0}) / spacing_ + Vec3d{around, around, around};
   const int parts = std::max(1, static_cast<int>(std::ceil(move / (finest * spacing_))));
-  // Whether a place is in the shape, or came through its rim since.
+  // True if a place is in the shape, or came through its rim since.
   const auto came = [&](const Vec3d& own, const Vec3d& p) {
     const double distance = shape_.distance(p);
     if (distance < 0 || first || distance > move) return distance < 0;

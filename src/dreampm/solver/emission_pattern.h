@@ -28,7 +28,7 @@ class EmissionPattern {
   void for_entering(double moved_before, double moved, bool first, const std::function<void(const Vec3d&)>& body) const;
 
  private:
-  /// From coordinates of the tiles [spacings] into the scene.
+  /// Returns the place in the scene for coordinates of the tiles [spacings].
   Vec3d place(const Vec3d& own, double moved) const;
 
   const Region& shape_;

@@ -27,7 +27,7 @@ class Places {
   bool any_near(const Vec3d& p) const {
     return any_near(p, [](const Vec3d&) { return true; });
   }
-  /// Of those that count.
+  /// True if any of the counted points is near.
   template <class Counts>
   bool any_near(const Vec3d& p, const Counts& counts) const {
     const Vec3i c = cell_of(p);
@@ -53,16 +53,18 @@ class Places {
 /// more than the step.
 constexpr double batch = 0.25;
 
-/// Whether enough has come in since `before` [s], or the last, or the first.
+/// True if matter that entered since `before` [s] is enough for a batch, or is the last, or the
+/// first.
 bool is_due(const Emitter& emitter, double spacing, double before, double now) {
   if (!emitter.gives_within(before, now)) return false;
   return before < emitter.start || now >= emitter.stop || emitter.moved(now) - emitter.moved(before) >= batch * spacing;
 }
 
-/// Where an emitter gave what comes in from `before` to `now` [s]; in the frame of its shape.
+/// Returns the sites of matter that comes in from `before` to `now` [s], in the frame of the
+/// emitter's shape.
 std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double before, double now) {
   const double to = std::min(now, emitter.stop);
-  // What came in at the stop has gone on since.
+  // Matter that came in at the stop has gone on since.
   const Vec3d since = emitter.along * (emitter.speed_at(to) * (now - to));
   std::vector<Vec3d> sites;
   Hash64 seed;
@@ -77,8 +79,8 @@ std::vector<Vec3d> entering_sites(const Emitter& emitter, double spacing, double
 /// half a spacing.
 constexpr double most_moved = 0.11;
 
-/// Where particle `id` of a site comes in: off it by the emitter's jitter, unless a wall or a
-/// collider is there.
+/// Returns the place at which particle `id` of a site comes in: off the site by the emitter's
+/// jitter, unless a wall or a collider is there.
 template <class R>
 Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, const Vec3d& site, std::uint32_t id) {
   if (emitter.jitter == 0) return site;
@@ -94,8 +96,8 @@ Vec3d jittered(const World<R>& world, const Emitter& emitter, double spacing, co
   return free ? p : site;
 }
 
-/// How matter has to be shifted to lie in the box: not at all, and by a period where the box
-/// reaches over the end of a periodic axis.
+/// Returns the shifts that bring matter into the box: zero, and a period where the box reaches over
+/// the end of a periodic axis.
 template <class R>
 std::vector<Vec3d> shifts_into(const World<R>& world, const Box3d& box) {
   std::vector<Vec3d> shifts{Vec3d{}};
@@ -242,7 +244,7 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
       const Vec3d momentum = s.velocity * set.mass;
       entered += {1, set.mass, momentum, angular_momentum(set, world.dx, s.position, s.velocity, s.gradient),
                   kinetic_energy(set, world.dx, s.velocity, s.gradient) - set.mass * dot(gravity, s.position)};
-      if (set.has_own()) world.keeping += kinetic_energy(set, world.dx, s.velocity, s.gradient);
+      if (set.has_own_velocity()) world.kept_kinetic_energy += kinetic_energy(set, world.dx, s.velocity, s.gradient);
     }
   }
   return entered;

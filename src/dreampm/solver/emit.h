@@ -6,7 +6,7 @@
 
 namespace dreampm {
 
-/// What came in.
+/// Sums of the matter that came in.
 struct Entered {
   std::uint64_t particles = 0;
   double mass = 0;    ///< kg

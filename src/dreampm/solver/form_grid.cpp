@@ -12,7 +12,7 @@
 namespace dreampm {
 namespace {
 
-/// Of all particles.
+/// The largest speed and the energies of all particles.
 struct Pace {
   double fastest = 0;  ///< m/s: no node is faster than a particle together with its affine motion over a cell
   double kept = 0;     ///< J, kinetic, of sets that keep velocities
@@ -45,14 +45,14 @@ Pace pace_of(const World<R>& world, const Motion<R>& motion) {
 template <class R>
 void form_grid(World<R>& world, Backend<R>& backend, Motion<R>& motion, Motion<R>& spare) {
   backend.download(world, motion, MatterFields::id | MatterFields::motion);
-  // What throws comes before the sort, so that world and motion stay in one order.
+  // Calls that may throw come before the sort, so that world and motion stay in one order.
   const PassStats stats = backend.state_bounds(world);
   if (!stats.finite)
     throw NumericalFailure(fmt::format("an edit at t = {:.6g} s leaves particles that are not finite", world.time));
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
   const Pace pace = pace_of(world, motion);
-  world.keeping = pace.kept;
+  world.kept_kinetic_energy = pace.kept;
   choose_dt(world, pace.fastest, frame_end(world) - world.time);
   if (const double longest = longest_stable_dt(world, pace.fastest);
       world.settings.fixed_dt > 0 && world.dt_next > longest)

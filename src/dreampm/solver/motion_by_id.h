@@ -26,7 +26,7 @@ void append(Set& to, const Set& from, std::size_t p) {
 template <class R>
 class MotionById {
  public:
-  /// Of no particle yet, in `sets` sets.
+  /// Makes a motion of `sets` sets without particles.
   explicit MotionById(std::size_t sets) : place_(sets) { motion_.sets.resize(sets); }
   /// `motion`: in the order of the world's particles.
   MotionById(const World<R>& world, Motion<R> motion) : motion_(std::move(motion)), place_(world.sets.size()) {
@@ -40,7 +40,7 @@ class MotionById {
       parallel_for(ids.size(), at_once, [&](std::size_t p) { place_[s][ids[p]] = static_cast<std::uint32_t>(p); });
     }
   }
-  /// Of matter that comes into set `s` at rest state.
+  /// Adds matter that comes into set `s` at its rest state.
   void add(std::size_t s, std::span<const ParticleSeed> seeds) {
     auto& m = motion_.sets[s];
     const std::size_t first = m.velocity.size();
@@ -56,7 +56,7 @@ class MotionById {
       m.volume_ratio[first + i] = R(1);
     });
   }
-  /// In the order of the particles now, each of which must have been there.
+  /// Returns the motion in the present order of the particles, each of which must have been there.
   Motion<R> ordered(const World<R>& world) const {
     Motion<R> out;
     order(world, out);

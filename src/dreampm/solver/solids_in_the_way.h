@@ -14,7 +14,7 @@ class SolidsInTheWay {
  public:
   template <class R>
   SolidsInTheWay(const World<R>& world, const Box3d& box);
-  /// Whether a place of the box lies inside of one.
+  /// True if a place of the box lies inside of a solid.
   bool cover(const Vec3d& p) const;
 
  private:

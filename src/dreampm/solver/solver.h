@@ -25,11 +25,12 @@ class Solver {
   /// at `next_sample_time` [s] or later. `contacts`: impacts of rigid bodies, or null. Throws
   /// NumericalFailure; the world is then lost.
   virtual StepSums step(World<R>& world, Motion<R>& motion, double next_sample_time, BodyContacts* contacts) = 0;
-  /// After edits of the world, and of `motion` with it: what the step to come needs, chosen anew.
+  /// Must be called after edits of the world, and of `motion` with it: chooses anew what the coming
+  /// step needs.
   virtual void form_grid(World<R>& world, Motion<R>& motion) = 0;
 };
 
-/// By world.settings.solver. `backend` must outlive it.
+/// Makes the solver of world.settings.solver. `backend` must outlive it.
 template <class R>
 std::unique_ptr<Solver<R>> make_solver(const World<R>& world, Backend<R>& backend);
 

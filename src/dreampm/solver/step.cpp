@@ -93,11 +93,12 @@ void begin(World<R>& world, Backend<R>& backend, const std::vector<std::vector<P
   backend.sort(world);
   world.wave_speed = stats.wave_speed;
   world.viscosity = stats.viscosity;
-  world.keeping = 0;
+  world.kept_kinetic_energy = 0;
   for (std::size_t s = 0; s < seeds.size(); ++s) {
     const ParticleSet<R>& set = world.sets[s];
     if (!set.transfer.keeps_velocity()) continue;
-    for (const ParticleSeed& n : seeds[s]) world.keeping += kinetic_energy(set, world.dx, n.velocity, n.gradient);
+    for (const ParticleSeed& n : seeds[s])
+      world.kept_kinetic_energy += kinetic_energy(set, world.dx, n.velocity, n.gradient);
   }
   choose_dt(world, fastest_of(seeds), frame_end(world) - world.time);
   if (world.aim_colliders()) backend.colliders_moved(world);
@@ -137,7 +138,8 @@ StepSums step(World<R>& world, Backend<R>& backend, Motion<R>* motion, double ne
   if (!pass.finite) throw failure(world, "a particle is no longer finite");
   StepSums sums = accounting.transferred(std::move(grid), pass);
 
-  world.wave_speed = pass.wave_speed, world.viscosity = pass.viscosity, world.keeping = pass.energy.keeping;
+  world.wave_speed = pass.wave_speed, world.viscosity = pass.viscosity,
+  world.kept_kinetic_energy = pass.energy.kept_kinetic;
   advance_clock(world, dt, frame.done);
   return sums;
 }

@@ -11,7 +11,7 @@
 namespace dreampm {
 namespace {
 
-/// What all sinks took so far.
+/// Adds up the matter that all sinks took so far.
 template <class R>
 void add_taken(const World<R>& world, std::uint64_t& taken, ImpulseSum& took_along) {
   for (const Sink& sink : world.sinks) {
@@ -64,8 +64,8 @@ template <class R>
 void StepAccounting<R>::add_what_left() {
   if (!before_sort_ || before_sort_->left == world_.left) return;
   sums_.left_mass = mass_ - mass_of(world_);
-  // What sinks took is known by itself. The grid does not tell beside walls, whose images are on
-  // it.
+  // Sinks report the matter that they took. The grid does not show it beside walls, whose images
+  // are on it.
   std::uint64_t taken = 0;
   ImpulseSum took_along;
   add_taken(world_, taken, took_along);
@@ -88,9 +88,9 @@ StepSums StepAccounting<R>::transferred(GridStats grid, const PassStats& pass) {
   // A kept velocity is not the grid's: what the grid cannot see of it comes back in the gather, and
   // counts both ways. What left is missing in the pass.
   if (sums_.left_mass == 0)
-    sums_.transfer = world_.keeping - sums_.grid.arrived + sums_.grid.kinetic - pass.energy.kinetic;
+    sums_.transfer = world_.kept_kinetic_energy - sums_.grid.arrived + sums_.grid.kinetic - pass.energy.kinetic;
   sums_.pass.energy.viscous += heat_;
-  // What liquids are shifted by is part of their volume relaxation; what colliders put back counts
+  // Shifts of liquids are part of their volume relaxation; displacements out of colliders count
   // with it.
   sums_.body.angular += pass.turned;
   sums_.pass.energy.relaxed += dot(world_.gravity_at(world_.time + sums_.dt), pass.shifted);

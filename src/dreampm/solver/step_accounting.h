@@ -1,4 +1,5 @@
-// What a step did to mass, momentum and energy, added up beside the step and never read by it.
+// The accounting of a step: its changes of mass, momentum and energy, added up beside the step and
+// never read by it.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -39,26 +40,28 @@ inline constexpr double roundings = 1;
 template <class R>
 class StepAccounting {
  public:
-  /// Before the step of world.dt_next. `frame_done`: whether it ends the frame. World and backend
-  /// have to outlive this object.
+  /// Begins the accounting of the step of world.dt_next. `frame_done`: true if it ends the frame.
+  /// World and backend have to outlive this object.
   StepAccounting(const World<R>& world, Backend<R>& backend, bool frame_done);
 
-  /// After grid_update: what acts on all matter alike, and how far rounding may move the sums.
+  /// Takes the result of grid_update: forces on all matter alike, and a bound of the rounding of
+  /// the sums.
   void grid_updated(const GridStats& grid);
-  /// After the stages of viscosity, which made this heat [J].
+  /// Takes the heat of the stages of viscosity [J].
   void sub_cycled(double heat);
-  /// Before a sort: notes the momentum on the grid where matter may leave.
+  /// Must be called before a sort: notes the momentum on the grid where matter may leave.
   void before_sort();
-  /// After g2p2g, while the world's clock and `keeping` are still those before the step: the sums
-  /// of the whole step. `grid`: as grid_update and the stages left it.
+  /// Takes the result of g2p2g, while the world's clock and `kept_kinetic_energy` are still those
+  /// before the step, and returns the sums of the whole step. `grid`: as grid_update and the stages
+  /// left it.
   StepSums transferred(GridStats grid, const PassStats& pass);
 
  private:
   struct BeforeSort {
     ImpulseSum on_grid;     ///< momentum of the nodes
     std::uint64_t left;     ///< World::left
-    std::uint64_t taken;    ///< by sinks, so far: particles,
-    ImpulseSum took_along;  ///< and their momentum, in `impulse` and `angular`
+    std::uint64_t taken;    ///< particles that sinks took so far
+    ImpulseSum took_along;  ///< momentum of these, in `impulse` and `angular`
   };
   void add_what_left();
 

@@ -1,4 +1,4 @@
-// Where the particles of a block may be.
+// Bounds of the places where particles of a block may be.
 #pragma once
 #include "dreampm/state/world.h"
 

@@ -21,7 +21,7 @@ double CellPressure<R>::from(const Vec3i& cell, double own, const Vec3d& way) co
     Vec3i low = cell, high = cell;
     low[a] -= 1, high[a] += 1;
     const double below = of_cell(low), above = of_cell(high);
-    // Of one side where the other has none, so that the slope ends with the liquid.
+    // One side's slope where the other side has no liquid, so that the slope ends with the liquid.
     const double slope = below == 0 ? (above == 0 ? 0 : above - own) : above == 0 ? own - below : (above - below) / 2;
     value += slope * way[a];
   }

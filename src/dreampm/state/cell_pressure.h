@@ -4,8 +4,8 @@
 
 namespace dreampm {
 
-/// Of a world that a projection steps, and which must outlive this. The pressure is a mean over the
-/// last step: that in its middle.
+/// The pressure of a world that a projection steps, and that must outlive this object. It is the
+/// mean over the last step, which is the pressure in the middle of that step.
 template <class R>
 class CellPressure {
  public:
@@ -19,7 +19,8 @@ class CellPressure {
   double at(const Vec3d& position) const;
 
  private:
-  /// What a cell of liquid, of pressure `own`, says of a place that is `way` cells from its center.
+  /// Returns the pressure that a cell of liquid, of pressure `own`, gives for a place `way` cells
+  /// from its center.
   double from(const Vec3i& cell, double own, const Vec3d& way) const;
 
   const World<R>& world_;

@@ -21,29 +21,29 @@ struct Collider {
   WallType type = WallType::separate;
   double friction = 0;
   double sticky = 0;  ///< Pa: the tension that it holds matter with, of one that matter may separate from
-  /// Whether matter that starts inside is held there, as if clamped. Such a collider puts no
+  /// True if matter that starts inside is held there, as if clamped. Such a collider puts no
   /// particle back out of it.
   bool holds = false;
   Pose pose{};    ///< of the shape
   Twist twist{};  ///< of the step to come
-  /// Where the solver looks for its surface: at the pose, or up to `slack` off. What is
-  /// known of the surface is found anew where this changes.
+  /// The pose at which the solver looks for the surface: the pose itself, or one up to `slack` off.
+  /// Caches of the surface are made anew where this changes.
   Pose surface_pose{};
-  /// Where it is to stand at each time, if that is prescribed; pose and twist follow it.
+  /// The prescribed motion, if there is one; pose and twist follow it.
   std::shared_ptr<const MotionPath> path{};
-  bool rigid = false;  ///< whether it is a rigid body (state/rigid_body.h)
-  /// Of one whose surface changes: `shape` is what it was at `surface_time` [s], which is `time`,
-  /// or so long before that no point moved by more than `settle_distance` since.
+  bool rigid = false;  ///< true if it is a rigid body (state/rigid_body.h)
+  /// The region of a collider whose surface changes. `shape` is its state at `surface_time` [s],
+  /// which is `time`, or an earlier time since which no point moved by more than `settle_distance`.
   std::shared_ptr<const ChangingRegion> changing{};
   double time = 0, surface_time = 0;
   /// Cells that its surface may be off its pose: with more, one that moves costs less.
   double slack = settle_distance;
 
-  /// What its surface does to matter: what it holds moves with it.
+  /// The effect of the surface on matter: matter that the collider holds moves with it.
   WallType contact() const { return holds ? WallType::stick : type; }
-  /// Whether it may stand elsewhere than in the scene.
+  /// True if its pose may differ from the scene's.
   bool moves() const { return rigid || path || changing || !twist.at_rest() || !(pose == Pose{}); }
-  /// Whether its surface has a velocity.
+  /// True if its surface is at rest.
   bool stands() const { return !rigid && !changing && twist.at_rest(); }
   /// Moves on for `dt` [s].
   void advance(double dt);

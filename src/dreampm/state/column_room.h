@@ -25,7 +25,7 @@ class ColumnRoom {
         runs_.push_back({before[b], after[b], count});
     }
     const std::uint32_t size = after.back(), farthest = size - before.back();
-    // What stays where it is.
+    // The first rows stay where they are.
     first_ = !runs_.empty() && runs_.front().to == runs_.front().from ? runs_.front().count : 0;
     parts_ = std::min<std::size_t>(most_parts, (size - first_) / std::max<std::uint32_t>(least_part, 4 * farthest));
     parts_ = std::max<std::size_t>(parts_, 1);
@@ -37,7 +37,7 @@ class ColumnRoom {
   void open(std::span<T> column) const {
     if (runs_.empty() || first_ == column.size()) return;
     std::vector<std::vector<T>> from_below(parts_);
-    // What comes from a part below goes first, before that one overwrites it.
+    // Rows that come from a part below go first, before that part overwrites them.
     parallel_for(parts_ - 1, 1, [&](std::size_t i) {
       const std::size_t begin = begin_of(i + 1, column.size());
       for_moves(begin, begin_of(i + 2, column.size()), [&](std::size_t from, std::size_t, std::size_t count) {
@@ -68,7 +68,7 @@ class ColumnRoom {
   struct Run {
     std::uint32_t from, to, count;
   };
-  /// Of the part `i` of a column of that size.
+  /// Returns the first row of part `i` of a column of that size.
   std::size_t begin_of(std::size_t i, std::size_t size) const { return first_ + (size - first_) * i / parts_; }
   /// Calls body(from, to, count) for what comes to [begin, end), the last first.
   template <class Body>

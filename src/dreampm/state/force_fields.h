@@ -11,7 +11,7 @@ class FieldSteps {
  public:
   FieldSteps(const World<R>& world, double dt);
   bool any() const { return !fields_.empty(); }
-  /// Whether any acts at a node of that grid block.
+  /// True if any field acts at a node of that grid block.
   bool any_in(const World<R>& world, const Vec3i& block) const;
   /// The velocity [m/s] after all fields, one after the other, at scene position `x` [m].
   Vec3<R> apply(Vec3<R> v, const Vec3d& x) const;

@@ -1,5 +1,6 @@
 // The block-sparse grid: blocks of 4^3 nodes, a sorted list and a lookup. Node coordinates are
-// integers; a block's are those of its first node divided by 4.
+// integers; a block's are those of its first node divided by 4. ARCHITECTURE.md, "The step", has a
+// drawing of blocks and stencils.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -28,8 +29,8 @@ struct alignas(4 * sizeof(R)) Node {
 template <class R>
 using Nodes = LargeVector<Node<R>>;
 
-/// What the sets share at a node, where there is matter of several kinds or a collider. It lies in
-/// the numbers of a Node, so that both go the same ways.
+/// The mixture: numbers of a node that the sets share, where there is matter of several kinds or a
+/// collider. They lie in the members of a Node, so that all code for nodes handles them too.
 namespace mixture {
 /// Fraction of the node's kernel that solids and colliders take [1].
 template <class N>
@@ -50,7 +51,7 @@ constexpr auto& viscosity(N& node) {
 
 /// Index of node (i, j, k), each in [0, 4), within its block.
 constexpr int node_index(int i, int j, int k) { return (i * block_width + j) * block_width + k; }
-/// From a node of a block to its neighbor along an axis.
+/// The step in index from a node of a block to its neighbor along an axis.
 inline constexpr int node_step[3] = {node_index(1, 0, 0), node_index(0, 1, 0), node_index(0, 0, 1)};
 
 /// Node number `n` of a block, relative to its first node.
@@ -58,10 +59,9 @@ constexpr Vec3i node_offset(int n) {
   return {n / (block_width * block_width), n / block_width % block_width, n % block_width};
 }
 
-/// Particles lie in blocks of their own, one node further on than those of the grid: the stencils
-/// of block b begin at this node or one of the next three along each axis, and before the next sort
-/// at most one before or after those. So they reach all nodes of the grid's blocks b and b + 1, and
-/// no others.
+/// Returns the lowest node at which stencils of a block of particles begin at a sort; they begin at
+/// it or one of the next three along each axis. Until the next sort they may begin one node before
+/// or after these four. docs/images/blocks.svg shows it.
 constexpr Vec3i first_stencil(const Vec3i& block) { return block * block_width + Vec3i{1, 1, 1}; }
 
 /// The lexicographic order of blocks: x first, then y, then z.
@@ -86,7 +86,7 @@ class BlockList {
   const std::vector<Vec3i>& all() const { return blocks_; }
   /// The index of that block, or `none`.
   std::int32_t find(const Vec3i& block) const;
-  /// Those of `first` and of the two that follow it along z.
+  /// Returns the indices of block `first` and of the two that follow it along z.
   std::array<std::int32_t, 3> find_three(const Vec3i& first) const;
   /// The index of the first block that is not before `block`; size() if there is none.
   std::size_t first_from(const Vec3i& block) const;
@@ -126,13 +126,13 @@ struct GridFields {
   Nodes<R> nodes;    ///< blocks.size() * 64
   Nodes<R> solids;   ///< the solids' own field where a scene has liquids too, else empty
   Nodes<R> mixture;  ///< see namespace mixture; the same size where a scene needs it, else empty
-  /// Of `nodes` and of `solids`: momentum and mass of OldVelocityTerm (physics/particle.h), after
+  /// Momentum and mass of OldVelocityTerm (physics/particle.h) for `nodes` and for `solids`, after
   /// grid_update velocity; only for fields in which a set keeps its particles' velocities, else
   /// empty.
   std::array<Nodes<R>, 2> velocity_old;
-  /// Of `nodes` and of `solids`: the momentum that stress gives in the step to come, without
-  /// viscosity, and that they do not hold; only where World::viscous_stages > 0, else empty, as
-  /// before the first pass: new matter is at rest.
+  /// The momentum that stress gives in the coming step, without viscosity, for `nodes` and for
+  /// `solids`, which do not contain it. Present only where World::viscous_stages > 0, else empty;
+  /// also empty before the first pass, as new matter is at rest.
   std::array<Nodes<R>, 2> stress;
 };
 

@@ -20,8 +20,7 @@ void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const
   });
 }
 
-/// Which of the blocks around a block lie on a side of it (-1 to 2) along an axis, as
-/// HaloMask::around.
+/// The blocks around a block that lie on a side of it (-1 to 2) along an axis, as HaloMask::around.
 struct Sides {
   std::uint64_t around[3][4]{};
   constexpr Sides() {
@@ -32,8 +31,8 @@ struct Sides {
 };
 constexpr Sides sides;
 
-/// Which blocks around a block its particles can reach before the next sort, by the cell that they
-/// lie in now.
+/// The blocks around a block that its particles can reach before the next sort, by the cell in
+/// which they are now.
 class CellReach {
  public:
   template <class R>
@@ -55,7 +54,7 @@ class CellReach {
       all_ &= all;
     }
   }
-  /// Of particles in `cells`.
+  /// Returns the blocks that particles in `cells` reach.
   std::uint64_t of(std::uint64_t cells) const {
     std::uint64_t around = 0;
     for (; cells && around != all_; cells &= cells - 1) {

@@ -1,4 +1,4 @@
-// Which blocks the grid has, by where particles are.
+// Grid topology: the list of blocks that the grid has, found from where particles are.
 #pragma once
 #include <span>
 

@@ -1,4 +1,4 @@
-// Where matter comes in, and where it is taken out.
+// Emitters and sinks, as the state of a World.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -34,13 +34,13 @@ struct Emitter {
   std::uint64_t pool = 0;
   bool recycle = false;
   std::uint64_t born = 0;                    ///< particles that it gave so far
-  bool dry = false;                          ///< whether its pool was ever used up
-  std::shared_ptr<const MotionPath> path{};  ///< where the shape stands; null: where the scene puts it
+  bool dry = false;                          ///< true if its pool was ever used up
+  std::shared_ptr<const MotionPath> path{};  ///< motion of the shape; null: it stays at the scene's place
 
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }
   double speed_at(double time) const { return value_at(std::span<const Key<double>>(speed), time); }
   Pose pose_at(double time) const { return path ? path->pose_at(time) : Pose{}; }
-  /// How the shape moves at that time.
+  /// Returns the motion of the shape at that time.
   Twist twist_at(double time) const {
     constexpr double moment = 1e-6;  // s
     return path ? path->twist_over(time, time + moment) : Twist{};
@@ -56,21 +56,21 @@ struct Emitter {
     const MotionPath::Fastest most = path->fastest_within(from, to);
     return inside + most.speed + most.spin * (length(own.center() - path->center) + 0.5 * length(own.size()));
   }
-  /// How far its places have moved since the start [m].
+  /// Returns the distance that its places have moved since the start [m].
   double moved(double time) const {
     return time > start ? mean_over(std::span<const Key<double>>(speed), start, time) * (time - start) : 0;
   }
 };
 
-/// What takes matter out that comes into it, when particles are sorted: every few steps.
+/// A sink. It takes out matter inside it when particles are sorted: every few steps.
 struct Sink {
   std::string name;
-  std::shared_ptr<const Region> shape;       ///< null for
-  std::optional<std::size_t> collider = {};  ///< one that takes what touches it: what is within a cell
-  std::uint64_t taken = 0;                   ///< particles, so far
-  Vec3d momentum{};                          ///< kg m/s, that they took along,
-  Vec3d angular{};                           ///< and angular momentum about the scene's origin [kg m^2/s]
-  std::shared_ptr<const MotionPath> path{};  ///< where the shape stands; null: where the scene puts it
+  std::shared_ptr<const Region> shape;       ///< region of the sink; null for a collider
+  std::optional<std::size_t> collider = {};  ///< collider that takes matter within a cell of it
+  std::uint64_t taken = 0;                   ///< number of particles taken so far
+  Vec3d momentum{};                          ///< kg m/s, of the particles taken
+  Vec3d angular{};                           ///< kg m^2/s, of the particles taken, about the scene's origin
+  std::shared_ptr<const MotionPath> path{};  ///< motion of the shape; null: it stays at the scene's place
 };
 
 }  // namespace dreampm

@@ -69,7 +69,7 @@ std::size_t room_of(const World<R>& world, std::size_t index, std::size_t size) 
   return room;
 }
 
-/// As GridTopology takes them.
+/// Returns the cells with particles, in the form that GridTopology takes.
 template <class R>
 std::vector<std::uint64_t> cells_of(const World<R>& world) {
   std::vector<std::uint64_t> cells(world.particle_blocks.size(), world.drift > 0 ? ~std::uint64_t{0} : 0);
@@ -90,7 +90,7 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   parallel_for(seeds.size(), seeds_at_once, [&](std::size_t i) { places[i] = world.locate(seeds[i].position); });
   const std::vector<std::uint32_t> block = find_blocks(world, places);
 
-  // Of each block, first those that were there, then the new ones in their order.
+  // The order within a block: particles that were there first, then new ones in their order.
   const std::size_t blocks = world.particle_blocks.size();
   std::vector<std::uint32_t> start(blocks + 1, 0), next(blocks), at(seeds.size());
   for (const std::uint32_t b : block) ++start[b + 1];
@@ -111,8 +111,9 @@ void insert(World<R>& world, std::size_t index, std::span<const ParticleSeed> se
   };
   extend(set.id, [&](std::size_t i) { return seeds[i].id; });
   for (int a = 0; a < 3; ++a) extend(set.u[a], [&](std::size_t i) { return places[i].at[a]; });
-  if (set.has_own())
-    for (int a = 0; a < 3; ++a) extend(set.own[a], [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
+  if (set.has_own_velocity())
+    for (int a = 0; a < 3; ++a)
+      extend(set.own_velocity[a], [&](std::size_t i) { return static_cast<R>(seeds[i].velocity[a]); });
   if (set.carries_motion)
     for (int c = 0; c < 9; ++c)
       extend(set.gradient[static_cast<std::size_t>(c)],
@@ -147,7 +148,7 @@ std::size_t erase(World<R>& world, std::size_t index, const std::vector<bool>& k
   std::vector<LargeVector<R>*> columns;
   for (auto& axis : set.u) columns.push_back(&axis);
   for (auto& column : set.state) columns.push_back(&column);
-  for (auto& axis : set.own) columns.push_back(&axis);
+  for (auto& axis : set.own_velocity) columns.push_back(&axis);
   for (auto& column : set.gradient) columns.push_back(&column);
   parallel_for(columns.size() + 1, 1, [&](std::size_t c) {
     if (c < columns.size())

@@ -46,7 +46,7 @@ template <std::size_t count, std::size_t depth, class R>
 std::array<std::int32_t, count> find_around(const BlockList& list, const World<R>& world, const Vec3i& block,
                                             Vec3i (*offset)(int)) {
   std::array<std::int32_t, count> found;
-  // Where z does not wrap between them, those of a column lie one after the other.
+  // Neighbors of a column are consecutive unless z wraps between them.
   const bool seam = world.periodic[2] && (world.wrapped(block + Vec3i{0, 0, -1}).z != block.z - 1 ||
                                           world.wrapped(block + Vec3i{0, 0, 1}).z != block.z + 1);
   for (std::size_t n = 0; n < count; n += depth) {

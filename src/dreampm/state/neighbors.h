@@ -9,7 +9,8 @@
 
 namespace dreampm {
 
-/// Where neighbor `n`, in [0, 27), of a block lies; 13 is the block itself, 26 - n lies opposite.
+/// Returns the offset of neighbor `n`, in [0, 27), of a block; 13 is the block itself, 26 - n lies
+/// opposite.
 constexpr Vec3i neighbor_offset(int n) { return {n / 9 - 1, n / 3 % 3 - 1, n % 3 - 1}; }
 
 /// The blocks around one as indices into a list, BlockList::none where one is missing. On periodic
@@ -18,10 +19,11 @@ using Neighbors = std::array<std::int32_t, 27>;
 template <class R>
 Neighbors neighbors_in(const BlockList& list, const World<R>& world, const Vec3i& block);
 
-/// Where number `n`, in [0, 8), of the grid's blocks lies that a block of particles reaches.
+/// Returns the offset of number `n`, in [0, 8), of the grid's blocks that a block of particles
+/// reaches.
 constexpr Vec3i stencil_block_offset(int n) { return {n / 4, n / 2 % 2, n % 2}; }
-/// Those blocks as indices into a list, BlockList::none where one is missing. On periodic axes of
-/// one block each comes twice.
+/// The grid's blocks that a block of particles reaches, as indices into a list; BlockList::none
+/// where one is missing. On periodic axes of one block each comes twice.
 using StencilBlocks = std::array<std::int32_t, 8>;
 template <class R>
 StencilBlocks stencil_blocks_in(const BlockList& list, const World<R>& world, const Vec3i& block);

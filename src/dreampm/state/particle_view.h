@@ -21,7 +21,7 @@ class ParticleSetView {
   ParticleSetView(const World<R>& world, std::size_t set) : world_(world), set_(world.sets.at(set)) {}
 
   std::size_t size() const { return set_.size(); }
-  /// In the order of the particles, as all below.
+  /// The ids in the order of the particles, as all below.
   std::span<const std::uint32_t> ids() const { return set_.id; }
   std::uint32_t id(std::size_t p) const { return set_.id[p]; }
   /// The state of particle `p`; M: the set's material.
@@ -29,10 +29,10 @@ class ParticleSetView {
   typename M::template State<R> state(std::size_t p) const {
     return state_of<M>(set_, p);
   }
-  /// How many columns of state there are, 0 before the first matter.
+  /// Returns the number of columns of state, 0 before the first matter.
   std::size_t columns() const { return set_.state.size(); }
-  /// By its number, as find_column() has it, or by its name. Throws std::out_of_range if the set's
-  /// material has no such column, or the set no matter yet.
+  /// Returns a column by its number, as find_column() has it, or by its name. Throws
+  /// std::out_of_range if the set's material has no such column, or the set no matter yet.
   std::span<const R> column(std::size_t c) const { return set_.state.at(c); }
   std::span<const R> column(std::string_view name) const { return column(column_index(set_.material, name)); }
 

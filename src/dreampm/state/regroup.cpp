@@ -37,8 +37,8 @@ int cell_of(R u) {
   return (towards_zero - (u < static_cast<R>(towards_zero))) & (block_width - 1);
 }
 
-/// Where cells come in the order of a block: row after row along z, each beside the one before, so
-/// that those of two rows that share a vector of lanes share nodes as well.
+/// Returns the place of a cell in the order of a block: row after row along z, each beside the one
+/// before, so that those of two rows that share a vector of lanes share nodes as well.
 constexpr int turn_of(int i, int j, int k) { return node_index(i, j ^ ((i & 1) * (block_width - 1)), k); }
 /// The cell that comes at a turn, as a bit of node_index().
 constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
@@ -50,11 +50,11 @@ constexpr std::array<std::uint64_t, block_nodes> cell_at = [] {
   return cells;
 }();
 
-/// Where what sinks take goes instead of to a neighbor.
+/// The destination of particles that sinks take, in place of a neighbor.
 constexpr std::uint8_t nowhere = 27;
 
-/// For each of the 27 neighbors, and `nowhere`, the first that is the same block: on periodic axes
-/// of one or two blocks some are.
+/// The first neighbor that is the same block, for each of the 27 and `nowhere`: on periodic axes of
+/// one or two blocks some are.
 using Alike = std::array<std::uint8_t, 28>;
 template <class R>
 Alike first_alike(const World<R>& world) {
@@ -79,23 +79,23 @@ bool beyond(const World<R>& world, const Vec3i& block) {
   return false;
 }
 
-/// Which particles come to a block: those that leave some of the old ones for one of their
-/// neighbors, each `old block * 32 + neighbor`, in the order of the old blocks. (As many blocks
-/// as do not fit would need 128 GiB.)
+/// The particles that come to a block: those that leave one of the old blocks for one of its
+/// neighbors, each `old block * 32 + neighbor`, in the order of the old blocks. (More blocks than
+/// fit would need 128 GiB.)
 struct Sources {
   std::uint32_t count = 0;
   std::array<std::uint32_t, 27> of;
 };
 
-/// What a sort needs for one set.
+/// Working memory of a sort for one set.
 template <class R>
 struct SetRoom {
-  /// Of each old block the place in `order` where those begin that move to neighbor n; [27] is the
-  /// end of all that stay in the world.
+  /// For each old block and neighbor n, the place in `order` where the particles begin that move
+  /// there; [27] is the end of all that stay in the world.
   std::vector<std::array<std::uint32_t, 28>> runs;
   std::vector<std::uint32_t> order;   ///< the particles of each old block, by the neighbor that they move to
-  std::vector<std::uint32_t> from;    ///< of each particle its old place,
-  std::vector<std::uint32_t> before;  ///< and what that was before a first of two sorts
+  std::vector<std::uint32_t> from;    ///< old place of each particle
+  std::vector<std::uint32_t> before;  ///< place of each particle before the first of two sorts
   std::vector<std::uint32_t> start;   ///< block_start of the new blocks
   LargeVector<R> column;
 
@@ -214,10 +214,10 @@ struct Regroup<R>::Scratch {
   BlockList old;
   std::vector<HaloMask> reach;
   HaloUnion spread;
-  std::vector<Sources> sources;      ///< of every new block,
-  std::vector<std::uint64_t> cells;  ///< and its cells with particles
+  std::vector<Sources> sources;      ///< for every new block
+  std::vector<std::uint64_t> cells;  ///< cells with particles of every new block
   std::vector<SetRoom<R>> sets;
-  std::vector<std::vector<std::uint32_t>> taken;  ///< by set, what sinks take: it moves nowhere
+  std::vector<std::vector<std::uint32_t>> taken;  ///< by set, particles that sinks take: they move nowhere
   GridTopology<R> topology;
 
   void find_moves(World<R>& world);
@@ -273,7 +273,7 @@ void Regroup<R>::Scratch::find_blocks(World<R>& world) {
   });
 }
 
-/// Where every particle was.
+/// Finds the old place of every particle.
 template <class R>
 void Regroup<R>::Scratch::find_places(World<R>& world) {
   for (std::size_t s = 0; s < sets.size(); ++s) {

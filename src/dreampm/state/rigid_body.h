@@ -13,8 +13,8 @@
 
 namespace dreampm {
 
-/// What makes a collider a rigid body: it moves the collider's pose and twist. The center of the
-/// twist is its center of mass.
+/// A rigid body: it moves the pose and twist of its collider. The center of the twist is its center
+/// of mass.
 struct RigidBody {
   std::size_t collider = 0;           ///< of World::colliders
   double mass = 1;                    ///< kg
@@ -83,7 +83,7 @@ inline Twist free_twist(const RigidBody& body, const Collider& collider, const V
   return next;
 }
 
-/// What bodies meet each other with: of each collider its shape, and the surface of one that is no
+/// The shape with which a body meets others: the collider's shape, and its surface if that is no
 /// box, sphere, cylinder or plane.
 struct CollisionShape {
   Shape shape;

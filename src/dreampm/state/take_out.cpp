@@ -12,14 +12,14 @@
 namespace dreampm {
 namespace {
 
-/// What a particle of block `b` will have of the grid's velocities, or has already: v [m/s] and C
-/// [1/s].
+/// Returns velocity [m/s] and velocity gradient C [1/s] of a particle of block `b`: its own if it
+/// carries them, else those that it will gather from the grid.
 template <class R>
 std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& set, std::size_t b, std::size_t p) {
   if (set.carries_motion) {
     Mat3d c{};
     for (int n = 0; n < 9; ++n) c(n / 3, n % 3) = static_cast<double>(set.gradient[static_cast<std::size_t>(n)][p]);
-    return {static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c};
+    return {static_cast<Vec3d>(Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}), c};
   }
   const Stencil<R> stencil = make_stencil(Vec3<R>{set.u[0][p], set.u[1][p], set.u[2][p]});
   const Vec3i first =
@@ -44,7 +44,7 @@ std::pair<Vec3d, Mat3d> gathered(const World<R>& world, const ParticleSet<R>& se
   return {static_cast<Vec3d>(Vec3<R>{found.value.x, found.value.y, found.value.z}), c};
 }
 
-/// Where a sink takes matter now.
+/// The region in which a sink takes matter now.
 class Mouth {
  public:
   template <class R>
@@ -87,7 +87,8 @@ struct Taken {
   Vec3d momentum, angular;
 };
 
-/// Of one block, in their order; `gone` are taken already.
+/// Returns the particles of one block that the sink takes, in their order; `gone` are taken
+/// already.
 template <class R>
 std::vector<Taken> taken_of(const World<R>& world, const ParticleSet<R>& set, std::size_t b, const Mouth& mouth,
                             const std::vector<std::uint32_t>& gone) {

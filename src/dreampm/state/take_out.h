@@ -1,4 +1,4 @@
-// What sinks take.
+// Removal of the matter that sinks take.
 #pragma once
 #include <cstdint>
 #include <vector>

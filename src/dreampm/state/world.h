@@ -45,14 +45,14 @@ struct ParticleSet {
   /// Position in cells relative to the first_stencil() of its block, minus 1/2: in [0, 4) after a
   /// sort, in (-1, 5) until the next.
   std::array<LargeVector<R>, 3> u;
-  std::vector<LargeVector<R>> state;  ///< the material's columns
-  std::array<LargeVector<R>, 3> own;  ///< velocity [m/s], where it is kept, else empty
+  std::vector<LargeVector<R>> state;           ///< the material's columns
+  std::array<LargeVector<R>, 3> own_velocity;  ///< velocity [m/s], where it is kept, else empty
   /// C [1/s], dv_a/dx_b in column 3 a + b; where the set carries its motion, else empty.
   std::array<LargeVector<R>, 9> gradient;
   std::vector<std::uint32_t> block_start;
 
   std::size_t size() const { return id.size(); }
-  bool has_own() const { return carries_motion || transfer.keeps_velocity(); }
+  bool has_own_velocity() const { return carries_motion || transfer.keeps_velocity(); }
   /// The edge of the cube that a particle takes at rest [m].
   double spacing() const { return std::cbrt(rest_volume); }
 };
@@ -64,7 +64,7 @@ struct StepSettings {
   double cfl = 0.5;
   double fixed_dt = 0;     ///< s; 0: from the bounds
   double dt_max = 1e30;    ///< s
-  bool sub_cycles = true;  ///< whether steps may be longer than explicit viscosity allows
+  bool sub_cycles = true;  ///< true if steps may be longer than explicit viscosity allows
   double damping = 0;      ///< 1/s: node velocities decay by exp(-damping dt)
   /// Keep particles inside walls, and let solids and grains touch these only when particles are
   /// there; false: walls act on nodes alone.
@@ -84,7 +84,8 @@ struct World {
   /// s: the step whose shares of own velocities weigh the carried grid's; 0 where no set has a
   /// memory.
   double kept_for = 0;
-  /// In which the forces of that step act, so that viscosity can; 0: they are baked, all at once.
+  /// Number of stages in which the forces of that step act, so that viscosity can; 0: they are
+  /// baked, all at once.
   int viscous_stages = 0;
   double dx = 0;              ///< m, a cell
   Vec3d origin;               ///< m, the scene position of node `low`
@@ -102,18 +103,18 @@ struct World {
   GridFields<R> grid;
   std::vector<Collider> colliders;
   std::vector<RigidBody> rigid;
-  std::vector<CollisionShape> collision;  ///< of each collider, where there are rigid bodies
+  std::vector<CollisionShape> collision;  ///< one for each collider, where there are rigid bodies
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
-  double emitted_until = -1;  ///< s; emitters have given what they give until then
-  std::uint32_t next_id = 0;  ///< of the next particle that an emitter gives; 0 without emitters
-  double drift = 0;           ///< cells that any particle may have moved since the last sort
-  double wave_speed = 0;      ///< m/s, largest of the last pass
-  double viscosity = 0;       ///< m^2/s, largest kinematic viscosity of the last pass
-  double keeping = 0;         ///< J, kinetic, of the last pass, of sets that keep velocities; reported, not state
-  std::uint64_t left = 0;     ///< particles that left through open walls, in all
-  double node_speed = 0;      ///< m/s, largest of this step's nodes; not state: every step finds it anew
-  double dt_before = 0;       ///< s, of the last step of a projection; 0 before the first
+  double emitted_until = -1;       ///< s; time up to which emitters have given matter
+  std::uint32_t next_id = 0;       ///< id of the next particle from an emitter; 0 without emitters
+  double drift = 0;                ///< bound on the cells that a particle moved since the last sort
+  double wave_speed = 0;           ///< m/s, largest of the last pass
+  double viscosity = 0;            ///< m^2/s, largest kinematic viscosity of the last pass
+  double kept_kinetic_energy = 0;  ///< J, of sets that keep velocities, in the last pass; reported, not state
+  std::uint64_t left = 0;          ///< particles that left through open walls, in all
+  double node_speed = 0;           ///< m/s, largest of this step's nodes; not state: every step finds it anew
+  double dt_before = 0;            ///< s, of the last step of a projection; 0 before the first
   /// Pa, of the cells of grid.blocks, a cell by its node of lowest coordinates; only of a
   /// projection, whose next solve begins from it.
   LargeVector<R> cell_pressure;
@@ -127,22 +128,22 @@ struct World {
   Vec3d gravity_at(double t) const {
     return gravity_keys.empty() ? gravity : value_at(std::span<const Key<Vec3d>>(gravity_keys), t);
   }
-  /// Its mean over a step from now: what the step's velocities gain is exact, whatever dt.
+  /// Returns the mean gravity over a step from now: the gain of velocity is exact, whatever dt.
   Vec3d gravity_over(double dt) const {
     return gravity_keys.empty() ? gravity : mean_over(std::span<const Key<Vec3d>>(gravity_keys), time, time + dt);
   }
-  /// Liquids and solids move in velocity fields of their own, so that one can slide along the
-  /// other.
+  /// True if there are liquids and solids: these move in velocity fields of their own, so that one
+  /// can slide along the other.
   bool needs_solid_field() const {
     bool liquid = false, solid = false;
     for (const auto& s : sets) (s.liquid ? liquid : solid) = true;
     return liquid && solid;
   }
-  /// Whether liquids move in that field of the grid: then nothing else does.
+  /// True if that field of the grid is the liquids': then nothing else moves in it.
   bool holds_liquid(std::size_t field) const {
     return field == 0 && std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.liquid; });
   }
-  /// Which of the grid's fields a set moves in: 0 nodes, 1 solids.
+  /// Returns the field of the grid in which a set moves: 0 nodes, 1 solids.
   std::size_t field_of(const ParticleSet<R>& set) const { return needs_solid_field() && !set.liquid ? 1 : 0; }
   /// The largest share of own velocities that a set of the field keeps; 0 if none does.
   double kept_share(std::size_t field) const {
@@ -160,15 +161,15 @@ struct World {
     const bool any = std::any_of(sets.begin(), sets.end(), [](const auto& s) { return s.transfer.memory > 0; });
     kept_for = any ? dt : 0;
   }
-  /// How much faster than the fastest node a particle may move: 2 where a transfer moves matter by
-  /// its own velocity.
+  /// Returns the bound of a particle's speed over that of the fastest node: 2 where a transfer
+  /// moves matter by its own velocity.
   double reach() const {
     for (const auto& s : sets)
       if (s.transfer.advance > 0 && s.transfer.keeps_velocity()) return 2;
     return 1;
   }
-  /// Whether the field's matter has several densities and some of it wants to know how densely it
-  /// lies, which the masses of nodes then do not show.
+  /// True if the field's matter has several densities and a law in it asks for the density around a
+  /// particle, which the masses of nodes then do not show.
   bool measures_by_volume(std::size_t field) const;
   /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how
   /// viscous they are.
@@ -181,7 +182,7 @@ struct World {
       if (w.skin_friction) return true;
     return false;
   }
-  /// In how many ways walls and solids hold liquids by viscosity.
+  /// Returns the number of ways in which walls and solids hold liquids by viscosity.
   int viscous_contacts() const { return (holds_liquid(0) && has_skin_friction()) + needs_solid_field(); }
   /// The block that stands for `b`: on periodic axes the one of the domain that it is a copy of.
   Vec3i wrapped(Vec3i b) const {
@@ -199,7 +200,7 @@ struct World {
     for (int a = 0; a < 3; ++a) low[a] = periodic[static_cast<std::size_t>(a)] ? 0 : first_stencil({})[a] + 1;
     high = low + cells;
   }
-  /// Between the walls [m].
+  /// Returns the box between the walls [m].
   Box3d domain() const { return {node_position(low), node_position(high)}; }
   /// The largest speed of a collider's surface in the domain [m/s], from now to `ahead` [s] later.
   double collider_speed(double ahead) const {

@@ -25,7 +25,7 @@ std::optional<WorldFault> fault_of(const ParticleSet<R>& set, std::size_t blocks
   return std::nullopt;
 }
 
-/// Whether the grid has all blocks that particles of a block reach.
+/// True if the grid has all blocks that particles of a block reach.
 template <class R>
 bool has_around(const World<R>& world, const Vec3i& block) {
   for (int corner = 0; corner < 8; ++corner)

@@ -1,4 +1,4 @@
-// Whether a world that was not made by steps fits together.
+// Checks of a world that was not made by steps.
 #pragma once
 #include <optional>
 #include <string>
@@ -12,7 +12,8 @@ struct WorldFault {
   std::string member, why;
 };
 
-/// What a step relies on without a look, and does not find in this world; nothing if all is there.
+/// Returns the first condition that steps rely on unchecked and that this world does not meet;
+/// nothing if it meets all.
 template <class R>
 std::optional<WorldFault> find_fault(const World<R>& world);
 

@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// Who needs a member.
+/// The uses of a member.
 struct FieldUse {
   bool copied = false;   ///< by as_world: what a scene gives before there is matter
   bool hashed = false;   ///< by state_hash: it decides the future
@@ -34,7 +34,7 @@ inline constexpr FieldUse setup_and_state{.copied = true, .hashed = true, .saved
 inline constexpr FieldUse state{.hashed = true, .saved = true};
 /// A column of particles, or nodes of the grid.
 inline constexpr FieldUse column{.hashed = true, .saved = true, .carried = true};
-/// For the ledger: it does not decide the future, but a run that goes on reports the same.
+/// A member for the ledger: it does not decide the future, but a run that goes on reports the same.
 inline constexpr FieldUse reported{.saved = true};
 /// Every step finds it anew.
 inline constexpr FieldUse not_state{};
@@ -52,13 +52,13 @@ struct Always {
   }
 };
 
-/// What a list says about a member. `name` is also that of the member in a checkpoint.
+/// A list's entry for a member. `name` is also the member's name in a checkpoint.
 template <FieldUse of, class Needed = Always>
 struct Field {
   static constexpr FieldUse use = of;
   std::string_view name;
-  /// Whether the array has to be there: of a World for the grid's fields, of the ParticleSet for
-  /// columns.
+  /// Predicate: true if the array has to be there. It takes a World for the grid's fields, a
+  /// ParticleSet for columns.
   Needed needed{};
 };
 
@@ -90,7 +90,7 @@ auto fields_of(W& world) {
   using namespace field_use;
   auto& [step, frame, time, dt_next, dt_limiter, kept_for, viscous_stages, dx, origin, low, high, walls, periodic,
          gravity, gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters,
-         sinks, emitted_until, next_id, drift, wave_speed, viscosity, keeping, left, node_speed, dt_before,
+         sinks, emitted_until, next_id, drift, wave_speed, viscosity, kept_kinetic_energy, left, node_speed, dt_before,
          cell_pressure] = world;
   auto& [solver, fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
@@ -121,7 +121,7 @@ auto fields_of(W& world) {
                     entry<state>("drift", drift),
                     entry<state>("wave_speed", wave_speed),
                     entry<state>("viscosity", viscosity),
-                    entry<sparse(reported)>("keeping", keeping),
+                    entry<sparse(reported)>("keeping", kept_kinetic_energy),
                     entry<state>("left", left),
                     entry<setup_and_state>("colliders", colliders),
                     entry<setup>("rigid", rigid),
@@ -142,8 +142,8 @@ auto fields_of(W& world) {
 template <MaybeConst<ParticleSet> S>
 auto fields_of(S& set) {
   using namespace field_use;
-  auto& [name, material, values, liquid, mass, rest_volume, transfer, carries_motion, id, u, columns, own, gradient,
-         block_start] = set;
+  auto& [name, material, values, liquid, mass, rest_volume, transfer, carries_motion, id, u, columns, own_velocity,
+         gradient, block_start] = set;
   return std::tuple{entry<setup>("name", name),
                     entry<setup>("material", material),
                     entry<setup>("values", values),
@@ -156,7 +156,7 @@ auto fields_of(S& set) {
                     entry<state>("block_start", block_start),
                     entry<column>("u", u),
                     entry<column>("state", columns),
-                    entry<sparse(column)>("own", own, [](const auto& s) { return s.has_own(); }),
+                    entry<sparse(column)>("own", own_velocity, [](const auto& s) { return s.has_own_velocity(); }),
                     entry<sparse(column)>("gradient", gradient, [](const auto& s) { return s.carries_motion; })};
 }
 

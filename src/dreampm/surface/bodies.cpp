@@ -36,7 +36,7 @@ class Sets {
   std::vector<N> parent_;
 };
 
-/// Which grid points inside of the surface, and which vertices around them, are connected. Nodes
+/// The connectivity of grid points inside of the surface, and of the vertices around them. Nodes
 /// are the stored points, then the inside leaves, then the vertices.
 template <class N>
 class Connectivity {
@@ -94,7 +94,7 @@ class Connectivity {
  private:
   static constexpr N kNowhere = ~N{0};
 
-  /// Of point `at` of a leaf, if it is inside.
+  /// Returns the node of point `at` of a leaf, if it is inside.
   N node(std::int32_t leaf, const Vec3i& at) const {
     if (leaf == LatticeMap::kAbsent) return kNowhere;
     const auto l = static_cast<std::size_t>(leaf);
@@ -102,7 +102,7 @@ class Connectivity {
     const auto i = l * SparseField::kPoints + static_cast<std::size_t>((at.z * kW + at.y) * kW + at.x);
     return field_.values[i] > field_.iso ? static_cast<N>(i) : kNowhere;
   }
-  /// Of a point of the lattice.
+  /// Returns the node of a point of the lattice.
   N node_at(const Vec3i& p) const {
     return node(leaves_.find({p.x >> 3, p.y >> 3, p.z >> 3}), {p.x & 7, p.y & 7, p.z & 7});
   }
@@ -120,7 +120,7 @@ class Connectivity {
       }
     }
   }
-  /// With the leaves behind it along each axis.
+  /// Joins a leaf with the leaves behind it along each axis.
   void join_across(std::size_t leaf) {
     const auto own = static_cast<std::int32_t>(leaf);
     const Vec3i place = leaf < field_.leaves.size() ? field_.leaves[leaf] : field_.inside[leaf - field_.leaves.size()];
@@ -135,7 +135,8 @@ class Connectivity {
       }
     }
   }
-  /// Of the points around a place in voxels, of the cube around it or one more on each side.
+  /// Returns the nearest inside node around a place in voxels, of the cube around it or one more on
+  /// each side.
   N nearest_inside(const Vec3f& local) const {
     const Vec3i base = lattice_cell(local, 1);
     float nearest = 1e30f;

@@ -185,8 +185,8 @@ class Contourer {
           x[a] += (end[a] - x[a]) * std::clamp((field_.iso - f0) / (f1 - f0), 0.0f, 1.0f);
           touches |= QuadMesh::kFree;
         }
-        // Where the surface meets a wall the free edges alone show how high: wall edges would pull
-        // the line down in steps.
+        // The height of a vertex where the surface meets a wall comes from the free edges alone:
+        // wall edges would pull the line down in steps.
         auto& part = wall >= 0 ? on_wall[static_cast<std::size_t>(patch)] : free[static_cast<std::size_t>(patch)];
         part.sum += x, part.count += 1;
       }

@@ -24,8 +24,9 @@ constexpr int edge_base(int edge) {
 }
 constexpr int edge_axis(int edge) { return edge / 4; }
 
-/// On a face whose inside corners are diagonal the inside corners are joined: each outside corner
-/// is cut off alone. Both cells at the face see it alike, so sheets meet without gaps.
+/// Makes the table. On a face whose inside corners are diagonal the inside corners are joined: each
+/// outside corner is cut off alone. Both cells at the face see it alike, so sheets meet without
+/// gaps.
 constexpr DualTable make_dual_table() {
   DualTable table;
   for (int config = 0; config < 256; ++config) {

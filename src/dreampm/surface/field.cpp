@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kW = SparseField::kWidth;
 
-/// Where leaves are needed, and which of them lie wholly inside.
+/// The plan of leaves: where they are needed, and which of them lie wholly inside.
 class LeafPlan {
  public:
   LeafPlan(const CellGrid& grid, const std::vector<std::uint8_t>& deep, const Walls& walls, const FieldSettings& s)

@@ -52,7 +52,8 @@ CellGrid cells_of(const std::vector<Kernel>& kernels, float size) {
   return CellGrid(centers, size);
 }
 
-/// How much smoothing each vertex bears: what the kernels around it say, less on small bodies.
+/// Returns the smoothing that each vertex bears: as the kernels around it allow, less on small
+/// bodies.
 std::vector<float> bearing(const QuadMesh& quads, const Bodies& bodies, const std::vector<Kernel>& kernels,
                            const CellGrid& centers) {
   std::vector<float> bear(quads.vertices.size(), 1.0f);

@@ -11,7 +11,7 @@
 
 namespace dreampm {
 
-/// What is to be wrapped. Every particle stands for a volume spacing^3.
+/// The particles to be wrapped. Every particle stands for a volume spacing^3.
 struct SurfaceInput {
   std::span<const Vec3f> positions{};   ///< m
   std::span<const Vec3f> velocities{};  ///< m/s, one a particle, or empty

@@ -61,7 +61,7 @@ class Reading {
     for (const Vec3f& p : in.positions) scatter(nodes_of(p));
   }
 
-  /// Of a particle's volume at rest.
+  /// Returns the volume that a particle takes, over its volume at rest.
   double taken(const Vec3f& p) const {
     const Nodes s = nodes_of(p);
     // Sums along z, then along y and x: of values, of values weighed by the distance, and of second

@@ -31,7 +31,7 @@ std::optional<fs::path> on_path(const std::string& name) {
   return std::nullopt;
 }
 
-/// Nothing: the libraries encode.
+/// Returns nothing: the libraries encode.
 std::optional<fs::path> encoder_program() {
   const char* named = std::getenv("DREAMPM_FFMPEG");
   if (named && *named) {

@@ -13,7 +13,7 @@ class Encoder {
  public:
   virtual ~Encoder() = default;
   virtual void add(const RgbImage& picture) = 0;
-  /// After the last picture. Without it the file is not whole.
+  /// Must be called after the last picture. Without it the file is not whole.
   virtual void finish() = 0;
 };
 

@@ -1,5 +1,5 @@
 // Arenas: the part of the grid that the particles of a few blocks reach, copied where a kernel can
-// work on it.
+// work on it. docs/images/blocks.svg, in ARCHITECTURE.md, is their drawing.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -11,9 +11,8 @@
 
 namespace dreampm {
 
-/// An arena covers the grid nodes that particles of up to `arena_blocks` consecutive blocks along z
-/// can touch before the next sort: two by two of the grid's blocks along x and y, and one more than
-/// `arena_blocks` along z. Its nodes are counted from the first of these.
+/// The most blocks of particles, consecutive along z, that share an arena. Its nodes are counted
+/// from the first node of the grid's block with the number of the first block of particles.
 inline constexpr int arena_blocks = 8;
 inline constexpr int arena_width = 2 * block_width, arena_depth = block_width * (arena_blocks + 1);
 inline constexpr int arena_rows = arena_width * arena_width;
@@ -24,7 +23,7 @@ struct Extent {
   bool known() const { return low.x <= high.x; }
 };
 
-/// The rows that the stencils of an arena's particles reach: few of spray.
+/// The rows that the stencils of an arena's particles reach; for spray these are few.
 struct ArenaReach {
   int low[2] = {arena_width, arena_width}, high[2] = {-1, -1};  ///< rows along x and y
   bool first = false, last = false;                             ///< the grid's blocks at its two ends along z
@@ -36,18 +35,20 @@ inline int first_node(float u) {
   return static_cast<int>(round_int(min(max(u, -0.99f), block_width + 0.99f) - 0.5f)) + 1;
 }
 
-/// How the lanes of a vector gather: together if their stencils begin in two by two rows of the
-/// arena. Without ArenaLoops::side_by_side they must also begin at four neighboring nodes along z.
+/// The way in which the lanes of a vector gather: together if their stencils begin in two by two
+/// rows of the arena. Without ArenaLoops::side_by_side they must also begin at four neighboring
+/// nodes along z.
 struct LaneGroup {
   bool together;
-  bool wide[2];           ///< whether some stencils begin at the second, along x and y
-  std::int16_t first[3];  ///< of the rows; of the four nodes, where that counts
+  bool wide[2];           ///< true if some stencils begin at the second, along x and y
+  std::int16_t first[3];  ///< first row along x and y, and first of the four nodes where that counts
 };
 
-/// Where the nodes of an arena lie in the grid.
+/// The place of an arena's nodes in the grid.
 struct ArenaPlace {
-  int blocks;  ///< of the grid along z: one more than blocks of particles
-  /// Those of the 2 x 2 pencils along z; BlockList::none where no particle can come.
+  int blocks;  ///< number of blocks of the grid along z: one more than blocks of particles
+  /// The grid's blocks in each of the 2 x 2 pencils along z; BlockList::none where no particle can
+  /// come.
   std::int32_t pencil[4][arena_blocks + 1];
   ArenaReach reach;
 
@@ -71,34 +72,36 @@ struct ArenaPlace {
         }
       }
   }
-  /// Of row (i, j) of the arena: which pencil it runs through, and its first node's number within
-  /// each block.
+  /// The pencil through which row (i, j) of the arena runs, and the number within each block of the
+  /// row's first node there.
   static constexpr int pencil_of(int i, int j) { return i / block_width * 2 + j / block_width; }
   static constexpr int first_in_block(int i, int j) { return node_index(i % block_width, j % block_width, 0); }
-  /// Those in reach along z.
+  /// The first block in reach along z, and the one after the last.
   int first() const { return reach.first ? 0 : 1; }
   int end() const { return reach.last ? blocks : blocks - 1; }
 };
 
 inline constexpr int node_numbers = 4;  ///< of a Node
 
-/// What particles gather: the splines along z of one block's rows. Each row has three rows of eight
-/// numbers, one for each part of a LineSpline by its middle node. The first is that of the nodes
-/// themselves; of the others the six between their ends mean something. Rows that are neighbors
-/// along one of the axes x and y, `beside`, lie side by side.
+/// Splines along z of the rows of one block, from which particles gather. Each row of nodes has
+/// three rows of eight numbers, one for each part of a LineSpline, by the spline's middle node. The
+/// first part is the nodes' values themselves; in the other two, only the six numbers between the
+/// ends are valid. `beside` is the axis, x or y, along which neighboring rows are adjacent in
+/// memory.
 struct BlockSplines {
   static constexpr int row_floats = 8, parts = 3;
   alignas(64) std::array<float, node_numbers * parts * arena_rows * row_floats + row_floats> v;
   static constexpr int at(int across, int number, int part, int beside) {
     return (((across * node_numbers + number) * parts + part) * arena_width + beside) * row_floats;
   }
-  /// From a row to the next along x (0) or y.
+  /// Returns the step from a row to the next along x (0) or y.
   static constexpr int step(int axis, int beside) { return axis == beside ? at(0, 0, 0, 1) : at(1, 0, 0, 0); }
 };
 
-/// What particles give, to four nodes along z at a time. Fours begin at every second node of a row,
-/// that before its first among them, and each lies on a cache line of its own. So a node has two
-/// places, two apart, and its sum is in both together. All zero between passes.
+/// Sums of an arena, to which particles scatter four nodes along z at a time. Groups of four begin
+/// at every second node of a row, the first one a node before the row, and each group lies on a
+/// cache line of its own. A node is thus in two groups, two places apart, and its sum is that of
+/// both. All are zero between passes.
 struct ArenaSums {
   static constexpr int row_nodes = 2 * arena_depth;
   static constexpr int block_step = 2 * block_width;  ///< from where a block's row begins to the next block's
@@ -121,7 +124,7 @@ struct ArenaLoops {
   /// Widens `extent` by `count` positions, a column for each axis, and finds the lane groups of
   /// their vectors. The extent passes over numbers that are NaN.
   void (*measure_extent)(const float* const (&u)[3], std::size_t count, LaneGroup* lane_groups, Extent& extent);
-  bool side_by_side;  ///< whether vectors gather from two rows at once if these lie side by side
+  bool side_by_side;  ///< true if vectors gather from two rows at once if these lie side by side
 };
 
 }  // namespace dreampm

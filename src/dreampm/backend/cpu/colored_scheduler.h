@@ -20,7 +20,7 @@ class ColoredScheduler {
   /// All tasks, those of a lower color first. Of two that touch, the one that comes first here runs
   /// first, in whatever order they are begun.
   const std::vector<std::uint32_t>& by_color() const { return by_color_; }
-  /// Before every run, by one thread.
+  /// Must be called before every run, by one thread.
   void begin();
   /// Calls body(task) for all of them. All threads of a team call it together.
   template <class Body>

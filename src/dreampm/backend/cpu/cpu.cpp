@@ -27,14 +27,14 @@ struct Arena {
   ArenaSums out[2], velocity_old_out[2], stress_out[2], mixture_out;
 };
 
-/// Of all materials, those from outside of this tree too.
+/// The check covers all materials, also those from outside of this tree.
 template <class... M>
 constexpr bool columns_fit(MaterialList<M...>) {
   return ((state_columns<M> <= most_state_columns) && ...);
 }
 static_assert(columns_fit(Materials{}), "a material has more columns of state than BlockPass::state holds");
 
-/// What a block costs before its first particle, in particles: loading and storing the arena.
+/// The fixed cost of a block, in particles: that of loading and storing the arena.
 constexpr std::uint32_t block_work = 48;
 
 /// Arenas that passes borrow.
@@ -77,8 +77,8 @@ class Cpu final : public Backend<float> {
   void attach(const World<float>& world) override {
     obstacles_.forget();
     sets_.clear();
-    // What another world left in rows that a pass does not fit is multiplied by zero: it must be
-    // finite.
+    // Rows that a pass does not fit may hold numbers of another world; they are multiplied by zero,
+    // and so must be finite.
     arenas_.drop();
     refresh(world);
   }
@@ -141,14 +141,14 @@ class Cpu final : public Backend<float> {
   }
 
  private:
-  /// What a pass over the particles is for.
+  /// The task of a pass over the particles.
   enum class Task { step, viscosity, speed };
 
   struct SetPass {
     BlockPass pass{};
     Kernel kernel = nullptr;
     ViscousKernel viscous = nullptr;
-    bool weighs = false;              ///< whether its particles gather mass
+    bool weighs = false;              ///< true if its particles gather mass
     std::shared_ptr<const void> law;  ///< made once: values change only before scatter_particles
     const std::vector<std::uint32_t>* block_start = nullptr;
     std::array<LargeVector<float>, 4> distance;  ///< as in BlockPass; empty without thin walls
@@ -158,13 +158,13 @@ class Cpu final : public Backend<float> {
     }
   };
 
-  /// What a pass found in one pencil of blocks.
+  /// The result of a pass in one pencil of blocks.
   struct PencilResult {
     PassStats stats;
     float speed2 = 0;  ///< of SpeedKernel [m^2/s^2]
   };
 
-  /// What the last pass since the last sort found about a block, for the next pass.
+  /// Facts about a block from the last pass since the last sort, for the next pass.
   struct BlockHistory {
     Extent extent;   ///< of its particles; unknown before the first pass, as their lane groups are
     int beside = 1;  ///< the axis along which its splines shall lie side by side
@@ -193,7 +193,7 @@ class Cpu final : public Backend<float> {
     find_first_writers(world.grid.blocks.size());
   }
 
-  /// For each grid block, the first task (in color order) that writes it; that task zeroes it.
+  /// Finds the first task (in color order) that writes each grid block; that task zeroes it.
   void find_first_writers(std::size_t grid_blocks) {
     resize_for_overwrite(first_writes_, stencil_blocks_.size());
     claimed_.assign(grid_blocks, false);
@@ -210,7 +210,7 @@ class Cpu final : public Backend<float> {
     for (std::size_t g = 0; g < grid_blocks; ++g)
       if (!claimed_[g]) unwritten_.push_back(static_cast<std::uint32_t>(g));
   }
-  /// Before a task adds to that block of the grid.
+  /// Clears a block of the grid before a task adds to it.
   void clear(const World<float>& world, Task task, std::size_t block) {
     if (task == Task::step) {
       update_.gaps().clear_block(block);
@@ -234,7 +234,8 @@ class Cpu final : public Backend<float> {
       p.pass.own_field = world.field_of(set) == 1;
       p.pass.by_volume = world.measures_by_volume(world.field_of(set));
       for (std::size_t a = 0; a < 3; ++a) p.pass.u[a] = set.u[a].data();
-      for (std::size_t a = 0; a < 3; ++a) p.pass.own[a] = set.transfer.keeps_velocity() ? set.own[a].data() : nullptr;
+      for (std::size_t a = 0; a < 3; ++a)
+        p.pass.own_velocity[a] = set.transfer.keeps_velocity() ? set.own_velocity[a].data() : nullptr;
       for (std::size_t c = 0; c < set.state.size(); ++c) p.pass.state[c] = set.state[c].data();
       if (motion) {
         auto& m = motion->sets[s];
@@ -306,8 +307,8 @@ class Cpu final : public Backend<float> {
       const std::size_t f = s.pass.own_field;
       used[f] = true, weighed[f] |= whole && s.weighs, by_volume |= s.pass.by_volume;
     }
-    // Where blocks follow each other in the grid's memory, the rows of all lie as those of the
-    // first.
+    // Rows of the first block; where blocks follow each other in the grid's memory, those of the
+    // others lie alike.
     std::int32_t rows[arena_rows];
     int row_count = 0;
     if (whole) place.for_rows(0, 1, [&](int, int, int node) { rows[row_count++] = node; });
@@ -352,8 +353,8 @@ class Cpu final : public Backend<float> {
         pass.clearance_in = colliders ? arena.clearance_in.v.data() : nullptr;
         pass.stress_out = whole && pass.step.sub_cycled ? arena.stress_out[field].nodes() + to : nullptr;
         pass.mixture_out = mixed ? arena.mixture_out.nodes() + to : nullptr;
-        pass.velocity_old_in = whole && pass.own[0] ? arena.velocity_old_in[field].v.data() : nullptr;
-        pass.velocity_old_out = whole && pass.own[0] ? arena.velocity_old_out[field].nodes() + to : nullptr;
+        pass.velocity_old_in = whole && pass.own_velocity[0] ? arena.velocity_old_in[field].v.data() : nullptr;
+        pass.velocity_old_out = whole && pass.own_velocity[0] ? arena.velocity_old_out[field].nodes() + to : nullptr;
         switch (task) {
           case Task::step:
             if (thin.any()) find_distances(thin, s, pass);
@@ -410,7 +411,8 @@ class Cpu final : public Backend<float> {
     }
     return extent;
   }
-  /// What the particles of those blocks, which share an arena, reach by their extents.
+  /// Returns the rows in reach of the particles of those blocks, which share an arena, by the
+  /// particles' extents.
   ArenaReach reach_of(std::size_t first, std::size_t end) const {
     Extent all;
     ArenaReach reach;

@@ -22,8 +22,8 @@ std::uint64_t run_multiply_adds(std::uint64_t count, std::string_view isa = "aut
 std::unique_ptr<Backend<float>> make_cpu_backend(std::string_view isa = "auto");
 
 struct KernelTable;
-/// With kernels of one's own (kernel.h), which must outlive it and have one for every material that
-/// is run.
+/// Makes a backend with the caller's kernels (kernel.h), which must outlive it and have one for
+/// every material that is run.
 std::unique_ptr<Backend<float>> make_cpu_backend(const KernelTable& kernels);
 
 }  // namespace dreampm

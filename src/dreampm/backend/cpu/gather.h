@@ -4,7 +4,7 @@
 #include "dreampm/backend/cpu/kernel.h"
 #include "dreampm/math/lanes.h"
 
-/// For lambdas, which know no DM_FN.
+/// An attribute of lambdas, which cannot have DM_FN.
 #define DM_INLINED __attribute__((always_inline))
 
 namespace dreampm::DM_ISA {
@@ -24,7 +24,7 @@ DM_FN LaneGroup lane_group_of(const Vec3<F>& u) {
   for (int a = 0; a < 2; ++a) {
     const F row = first_along(a);
     const float some = lane0(row);
-    // Of whole numbers none but 0 and 1 is its square, and none but 0 and -1 the negative of it.
+    // Among whole numbers only 0 and 1 equal their square, and only 0 and -1 the negative of it.
     const F from_some = row - F(some), square = from_some * from_some;
     const bool before = any(square != from_some), after = any(square != -from_some);
     group.first[a] = static_cast<std::int16_t>(static_cast<int>(some) + 1 - before);
@@ -32,7 +32,7 @@ DM_FN LaneGroup lane_group_of(const Vec3<F>& u) {
     group.together &= !(before & after);
   }
   if constexpr (!rows_side_by_side) {
-    // Of the six places from -1 to 4 the first four, the last, or those between.
+    // The first four of the six places from -1 to 4, the last, or those between.
     const F place = first_along(2);
     const bool to_2 = !any(place > F(2.5f)), to_3 = !any(place > F(3.5f));
     const bool from_0 = !any(place < F(-0.5f)), from_1 = !any(place < F(0.5f));
@@ -42,7 +42,7 @@ DM_FN LaneGroup lane_group_of(const Vec3<F>& u) {
   return group;
 }
 
-// What follows gives gather() its rows: of(arena, number).
+// The sources of rows for gather(): of(arena, number).
 
 #ifndef DM_SIXTEEN_LANES
 /// Lanes whose stencils begin in the same rows, of two by two, pick from the same splines, four
@@ -128,10 +128,10 @@ class OwnRows {
   alignas(64) std::int32_t first_[W];  ///< by lane
 };
 
-/// What a pass gathers besides velocities and their slopes.
+/// The quantities that a pass gathers besides velocities and their slopes.
 struct Wants {
-  bool excess;   ///< as in G2PResult,
-  bool density;  ///< content, and what is blocked of it,
+  bool affine_excess;  ///< as in G2PResult,
+  bool density;        ///< content, and what is blocked of it,
   bool density_state;
 };
 template <class M, bool relaxes>
@@ -146,7 +146,7 @@ class Source {
         filled_(pass.by_volume && pass.mixture_in ? 1 + pass.own_field : 0),
         beside_(pass.beside) {}
 
-  /// What plain passes want, of a vector of particles at `u`.
+  /// Gathers for a vector of particles at `u` in a plain pass.
   template <Wants wants>
   DM_FN void gather_at(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     if (group.together) {
@@ -155,7 +155,7 @@ class Source {
         gather_from<wants>(s, x, y, rows, g);
       });
     } else {
-      // Of copies: what a call gets by reference stays in memory everywhere.
+      // A copy, as an object that a call gets by reference stays in memory everywhere.
       const Source source = *this;
       const Vec3<F> at = u;
       G2PResult<F> own;
@@ -163,8 +163,8 @@ class Source {
       g = own;
     }
   }
-  /// What any pass wants but `own`, in one function for all kernels that want the same: inlined in
-  /// each, it is half of what there is to compile.
+  /// Gathers all but `own` for any pass, in one function for all kernels that want the same:
+  /// inlined in each, it is half of all code to compile.
   template <Wants wants>
   __attribute__((noinline)) void gather_apart(const Vec3<F>& u, const LaneGroup& group, G2PResult<F>& g) const {
     gather_at<wants>(u, group, g);
@@ -172,7 +172,7 @@ class Source {
   }
 
  private:
-  /// What is gathered from: velocities and masses of a field, its velocities before forces, the
+  /// The fields to gather from: velocities and masses of a field, its velocities before forces, the
   /// mixture, and the clearance.
   struct Fields {
     const float *field, *velocity_old, *mixture, *clearance;
@@ -216,7 +216,7 @@ class Source {
       const auto value = [&](const float* field, int number)
                              DM_INLINED { return gather_value<F>(x, y, z, rows.of(field, number)); };
       if (splines_.clearance) {
-        for (int c = 0; c < 3; ++c) g.away[c] = value(splines_.clearance, c);
+        for (int c = 0; c < 3; ++c) g.clearance_gradient[c] = value(splines_.clearance, c);
         g.clearance = value(splines_.clearance, 3);
       }
       if (splines_.velocity_old)
@@ -234,12 +234,12 @@ class Source {
     const Fields& from = splines_;
     const LinePlace<F> z(s.t[2]);
     const auto component = [&]<int c>() DM_INLINED {
-      const Moments<F> m = gather<F, wants.excess ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
+      const Moments<F> m = gather<F, wants.affine_excess ? bend_along(c) : no_bends>(x, y, z, rows.of(from.field, c));
       g.v[c] = m.value;
       for (int a = 0; a < 3; ++a) g.affine_moment[a][c] = m.first_moment[a];
-      if constexpr (wants.excess) {
+      if constexpr (wants.affine_excess) {
         const F excess = affine_excess(s.t[c]);
-        g.excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.excess);
+        g.affine_excess = c == 0 ? m.bend[c] * excess : mul_add(m.bend[c], excess, g.affine_excess);
       }
     };
     component.template operator()<0>(), component.template operator()<1>(), component.template operator()<2>();
@@ -249,11 +249,11 @@ class Source {
         const F full(full_);
         g.density_state = from.mixture ? density_state(x, y, z, s.t, full, content, rows.of(from.mixture, 0))
                                        : density_state(x, y, z, s.t, full, content);
-        g.content = g.density_state.content;
+        g.node_content = g.density_state.node_content;
       } else {
-        g.content = gather_value<F>(x, y, z, content);
+        g.node_content = gather_value<F>(x, y, z, content);
       }
-      g.blocked = wants.excess && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
+      g.blocked = wants.affine_excess && from.mixture ? gather_value<F>(x, y, z, rows.of(from.mixture, 0)) : F();
     }
   }
   /// Axis `a` of the stencils among as many nodes from `from` on.

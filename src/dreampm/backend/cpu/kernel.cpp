@@ -80,15 +80,15 @@ class RowFetcher {
   int share_, next_ = 0;
 };
 
-/// Whether a pass has only what all have: matter that keeps no velocities, alone on the grid, and
-/// no obstacles about.
+/// True if a pass has no optional terms: its matter keeps no velocities, is alone on the grid, and
+/// has no obstacles near.
 bool is_plain(const BlockPass& pass) {
-  return !pass.own[0] && !pass.velocity && !pass.mixture_in && !pass.stress_out && !pass.clearance_in &&
+  return !pass.own_velocity[0] && !pass.velocity && !pass.mixture_in && !pass.stress_out && !pass.clearance_in &&
          !pass.step.sub_cycled && !pass.walls.colliders;
 }
 /// Says so where the compiler can see it: of a plain pass nothing changes.
 DM_FN void make_plain(BlockPass& pass) {
-  pass.own[0] = pass.velocity = nullptr;
+  pass.own_velocity[0] = pass.velocity = nullptr;
   pass.mixture_in = pass.velocity_old_in = pass.clearance_in = nullptr;
   pass.mixture_out = pass.velocity_old_out = pass.stress_out = nullptr;
   pass.step.sub_cycled = pass.walls.colliders = false;
@@ -133,11 +133,12 @@ void run_step(const BlockPass& of, PassStats& stats, BlockExtent& there) {
       if (!plain && pass.distance[0]) {
         const F exact = load_first(pass.distance[3] + p, n);
         const auto is_given = exact < F(no_distance);
-        for (int a = 0; a < 3; ++a) g.away[a] = select(is_given, load_first(pass.distance[a] + p, n), g.away[a]);
+        for (int a = 0; a < 3; ++a)
+          g.clearance_gradient[a] = select(is_given, load_first(pass.distance[a] + p, n), g.clearance_gradient[a]);
         g.clearance = select(is_given, exact, g.clearance);
       }
-      if (pass.own[0])
-        for (int a = 0; a < 3; ++a) g.own[a] = load_first(pass.own[a] + p, n);
+      if (pass.own_velocity[0])
+        for (int a = 0; a < 3; ++a) g.own_velocity[a] = load_first(pass.own_velocity[a] + p, n);
       typename M::template State<F> state;
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) state[k] = load_first(pass.state[k] + p, n);
@@ -149,13 +150,14 @@ void run_step(const BlockPass& of, PassStats& stats, BlockExtent& there) {
       for (int a = 0; a < 3; ++a) store_first(u[a], pass.u[a] + p, n);
 #pragma GCC unroll 16
       for (int k = 0; k < columns; ++k) store_first(state[k], pass.state[k] + p, n);
-      if (pass.own[0])
-        for (int a = 0; a < 3; ++a) store_first(s.own[a], pass.own[a] + p, n);
+      if (pass.own_velocity[0])
+        for (int a = 0; a < 3; ++a) store_first(s.own_velocity[a], pass.own_velocity[a] + p, n);
       const F j = volume_ratio(law, state);
       found.template add<M>(step, walls, n, g, s, j, response, u, pushed);
-      if (pass.velocity) write_output(pass, p, n, s.own, affine_velocity(g.affine_moment, step.dx), response.energy, j);
+      if (pass.velocity)
+        write_output(pass, p, n, s.own_velocity, affine_velocity(g.affine_moment, step.dx), response.energy, j);
       const F viscosity = response.kinematic_viscosity + response.implicit_viscosity;
-      buffer.put(pass, at, u, s, g.affine_moment, viscosity, j);
+      buffer.fill(pass, at, u, s, g.affine_moment, viscosity, j);
       *group = lane_group_of(u);
       if constexpr (rows_side_by_side)
 #pragma GCC unroll 2
@@ -235,7 +237,7 @@ float fastest_of(const BlockPass& of) {
   return largest_of(fastest2);
 }
 
-/// For the first `wanted` numbers of a node.
+/// Fits splines to the first `wanted` numbers of a node.
 template <int wanted>
 void fit(const Node<float>* grid, const ArenaPlace& place, int block, const ArenaReach& reach, int beside,
          float* splines) {

@@ -12,7 +12,7 @@
 
 namespace dreampm {
 
-/// Where the particles of a block lie after a step.
+/// The bounds of the particles of a block after a step.
 struct BlockExtent {
   Extent extent;
   int wide[2] = {};  ///< vectors whose lanes begin in two rows along this axis, x or y, and in one along the other
@@ -20,10 +20,10 @@ struct BlockExtent {
 
 /// Rows of nodes that are worth fetching while a block is at work. Hints: nothing need lie there.
 struct PrefetchHints {
-  const std::int32_t* rows;  ///< the numbers of their first nodes,
-  int count;                 ///< number of rows,
-  std::uintptr_t from;       ///< counted from here what the next block gathers from, unless 0,
-  std::uintptr_t to;         ///< and from here the first half of what this one gives to
+  const std::int32_t* rows;  ///< numbers of their first nodes
+  int count;                 ///< number of rows
+  std::uintptr_t from;       ///< base of the rows from which the next block gathers, or 0
+  std::uintptr_t to;         ///< base of the rows to which this block scatters; their first half is fetched
 };
 
 /// Columns of state that a material may have (docs/howto/add-a-material.md).
@@ -37,25 +37,25 @@ struct BlockPass {
   const void* law;  ///< Law<float> of the kernel's material
   SetStep<float> step;
   BlockWalls<float> walls;
-  bool liquid;     ///< which numbers of the mixture the set feeds,
-  bool own_field;  ///< and whether it is of the solids' own field
+  bool liquid;     ///< true if the set is a liquid, which decides the numbers of the mixture that it feeds
+  bool own_field;  ///< true if the set moves in the solids' own field
   // Splines and arenas, from the first node that the block's particles can reach on.
   const float* in;               ///< splines of velocity and mass of the set's field,
   int beside;                    ///< side by side along this axis, of x and y
   Node<float>* out;              ///< momenta and masses, added to
-  bool by_volume;                ///< whether a density is measured by the mixture, and not by mass
+  bool by_volume;                ///< true if a density is measured by the mixture, and not by mass
   const float* mixture_in;       ///< splines of the mixture, or null
   Node<float>* mixture_out;      ///< added to, or null
   const float* velocity_old_in;  ///< splines as in `in` before the forces; null unless the set keeps velocities
   const float* clearance_in;     ///< splines of Obstacles::clearance, or null
-  /// Whole columns of the gradient of the distance from colliders and of that distance [cells], or
-  /// null: near walls too thin for the splines of the clearance they take its place where they are
-  /// below `no_distance`.
+  /// Columns of the gradient of the distance from colliders, and of that distance [cells], or null.
+  /// Near walls too thin for the splines of the clearance they replace it, where they are below
+  /// `no_distance`.
   const float* distance[4];
   Node<float>* velocity_old_out;  ///< as in OldVelocityTerm, added to; null unless the set keeps velocities
   Node<float>* stress_out;        ///< momenta of stress alone, added to; null unless the step to come is sub-cycled
   float* u[3];                    ///< whole columns
-  float* own[3];                  ///< velocities that the set keeps, or null
+  float* own_velocity[3];         ///< velocities that the set keeps, or null
   float* state[most_state_columns];
   std::size_t begin, end;  ///< particles of the block
   PrefetchHints hints;     ///< of the set's field
@@ -72,8 +72,8 @@ using Kernel = void (*)(const BlockPass&, PassStats&, BlockExtent&);
 /// The largest square of a speed that the particles gather [m^2/s^2].
 using SpeedKernel = float (*)(const BlockPass&);
 
-/// What viscous stress gives to `out`; particles stay as they are. Looks at no more of a BlockPass
-/// than that takes.
+/// A kernel that adds the momentum of viscous stress to `out`; particles stay as they are. It reads
+/// only the members of BlockPass that this takes.
 using ViscousKernel = void (*)(const BlockPass&);
 
 /// Work that nothing but the arithmetic units limits: `rounds` rounds of 12 independent

@@ -1,4 +1,4 @@
-// What a kernel finds out about its particles, lane by lane.
+// Statistics that a kernel gathers over its particles, lane by lane.
 #pragma once
 #include "dreampm/backend/cpu/gather.h"
 
@@ -50,7 +50,7 @@ class LaneStats {
       if (measured) count(n, {s.swollen}, swollen_);
     }
     if (shifts) {
-      const Vec3<F> turned = cross(s.shifted, s.own);
+      const Vec3<F> turned = cross(s.shifted, s.own_velocity);
       count(n, {s.shifted.x, s.shifted.y, s.shifted.z}, shifted_);
       count(n, {turned.x, turned.y, turned.z}, turned_);
     }
@@ -70,7 +70,7 @@ class LaneStats {
     const double mass = static_cast<double>(pass.step.mass), volume = static_cast<double>(pass.step.volume);
     const auto energy = [&](int i) DM_INLINED { return static_cast<double>(sum_of(energy_[i])); };
     stats.energy.kinetic += energy(0) * mass;
-    if (pass.velocity_old_out) stats.energy.keeping += energy(0) * mass;
+    if (pass.velocity_old_out) stats.energy.kept_kinetic += energy(0) * mass;
     stats.energy.viscous += energy(1) * volume;
     stats.energy.plastic += energy(2) * volume;
     stats.energy.relaxed += energy(3) * volume;

@@ -23,7 +23,7 @@ DM_FN std::uint64_t equal_to(const std::int32_t (&numbers)[chunk], std::int32_t 
 /// One record of four floats for each particle of a chunk, by record_of.
 struct Records {
   alignas(64) float v[chunk * 4];
-  DM_FN void put(int first, const F& a, const F& b, const F& c, const F& d) {
+  DM_FN void fill(int first, const F& a, const F& b, const F& c, const F& d) {
     store_records(a, b, c, d, v + 4 * first);
   }
 };
@@ -42,14 +42,14 @@ struct ScatterTerms {
   Records middle, slope[3];
 
   /// `t`: of the particles from that node.
-  DM_FN void put(int first, const Vec3<F>& q, const F& mass, const Vec3<F> (&slopes)[3], const F (&t)[3]) {
+  DM_FN void fill(int first, const Vec3<F>& q, const F& mass, const Vec3<F> (&slopes)[3], const F (&t)[3]) {
     F q_at[3];
     for (int c = 0; c < 3; ++c) {
       const F along[3] = {slopes[0][c], slopes[1][c], slopes[2][c]};
       q_at[c] = at_middle(q[c], along, t);
     }
-    middle.put(first, q_at[0], q_at[1], q_at[2], mass);
-    for (int a = 0; a < 3; ++a) slope[a].put(first, slopes[a].x, slopes[a].y, slopes[a].z, F());
+    middle.fill(first, q_at[0], q_at[1], q_at[2], mass);
+    for (int a = 0; a < 3; ++a) slope[a].fill(first, slopes[a].x, slopes[a].y, slopes[a].z, F());
   }
 };
 
@@ -61,12 +61,12 @@ class StencilBatch {
   /// The stencils of the chunk's particles from number `first` on, as many as there are lanes,
   /// which lie at `u`. Gives the particles' distances from the second node of the four along z, and
   /// from the middle one along x and y: what ScatterTerms::put takes.
-  DM_FN void put(int first, const Vec3<F>& u, F (&t)[3]) {
+  DM_FN void fill(int first, const Vec3<F>& u, F (&t)[3]) {
     const Stencil<F> s = make_stencil(u);
     const F half(0.5f), pair = round_int(mul_sub(s.base[2], half, F(0.25f)));
     const Shared<F, 4> z(s.w[2], s.t[2], s.base[2] > mul_add(pair, F(2.0f), half));
     t[0] = s.t[0], t[1] = s.t[1], t[2] = z.t;
-    z_.put(first, z.w[0], z.w[1], z.w[2], z.w[3]);
+    z_.fill(first, z.w[0], z.w[1], z.w[2], z.w[3]);
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) (s.w[0][i] * s.w[1][j]).store(xy_[3 * i + j] + first);
     const auto number = [](int n) DM_INLINED { return F(static_cast<float>(n)); };
@@ -138,26 +138,26 @@ struct ScatterBuffer {
   StencilBatch stencils;
   ScatterTerms terms, before, mixture, stress;
 
-  /// Of the particles from `first` on, which lie at `u` now.
-  DM_FN void put(const BlockPass& pass, int first, const Vec3<F>& u, const P2GTerms<F>& s,
-                 const Vec3<F> (&affine_moment)[3], const F& viscosity, const F& volume_ratio) {
+  /// Scatters the particles from `first` on, which lie at `u` now.
+  DM_FN void fill(const BlockPass& pass, int first, const Vec3<F>& u, const P2GTerms<F>& s,
+                  const Vec3<F> (&affine_moment)[3], const F& viscosity, const F& volume_ratio) {
     F t[3];
-    stencils.put(first, u, t);
-    terms.put(first, s.q, F(pass.step.mass), s.slope, t);
+    stencils.fill(first, u, t);
+    terms.fill(first, s.q, F(pass.step.mass), s.slope, t);
     if (pass.velocity_old_out) {
       const OldVelocityTerm<F> b(s, affine_moment, pass.step);
-      before.put(first, b.q, b.mass, b.slope, t);
+      before.fill(first, b.q, b.mass, b.slope, t);
     }
     if (!pass.mixture_out) return;
     const F cells(pass.step.volume / (pass.step.dx * pass.step.dx * pass.step.dx));
-    mixture.middle.put(first, pass.liquid ? F() : volume_ratio * cells, pass.own_field ? F() : cells,
-                       pass.own_field ? cells : F(), pass.liquid ? viscosity * F(pass.step.mass) : F());
+    mixture.middle.fill(first, pass.liquid ? F() : volume_ratio * cells, pass.own_field ? F() : cells,
+                        pass.own_field ? cells : F(), pass.liquid ? viscosity * F(pass.step.mass) : F());
   }
   /// Stress alone, of particles at `u`.
   DM_FN void put_stress(int first, const Vec3<F>& u, const Vec3<F> (&slope)[3], ScatterTerms& to) {
     F t[3];
-    stencils.put(first, u, t);
-    to.put(first, {}, F(), slope, t);
+    stencils.fill(first, u, t);
+    to.fill(first, {}, F(), slope, t);
   }
   DM_FN void flush(const BlockPass& pass, int particles) const {
     stencils.template flush<true>(particles, terms, pass.out);

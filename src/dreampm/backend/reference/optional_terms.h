@@ -8,22 +8,22 @@
 
 namespace dreampm::reference {
 
-/// Of liquids: by how much tr C exceeds the divergence of the field that moves the particles [m/s
-/// cells].
+/// Returns the excess of tr C over the divergence of the field that moves the particles [m/s
+/// cells]; for liquids.
 template <class R>
 R divergence_excess(const Moments<Node<R>>& found, const Stencil<R>& s) {
   return found.bend[0].x * affine_excess(s.t[0]) + found.bend[1].y * affine_excess(s.t[1]) +
          found.bend[2].z * affine_excess(s.t[2]);
 }
 
-/// Whether sets share nodes with others, or with colliders.
+/// True if sets share nodes with others, or with colliders.
 template <class R>
 bool has_mixture(const SetContext<R>& context) {
   return !context.world.grid.mixture.empty();
 }
 
-/// Of laws that measure their density: how much matter the nodes around hold, and how much of them
-/// others take; of liquids whose volume is relaxed also where surfaces are, and the shift.
+/// Gathers for laws that measure density: the content of the nodes around, and the part of it that
+/// others take; for liquids whose volume is relaxed also where surfaces are, and the shift.
 template <class M, class R>
 void gather_density(const SetContext<R>& context, const ParticleNodes<R>& nodes, G2PResult<R>& g) {
   const Nodes<R>&masses = context.velocities(), &mixture = context.world.grid.mixture;
@@ -32,7 +32,7 @@ void gather_density(const SetContext<R>& context, const ParticleNodes<R>& nodes,
     return context.by_volume ? mixture::filled(mixture[i], context.field) : masses[i].m;
   };
   const auto taken = [&](std::size_t i) { return shares ? mixture::blocked(mixture[i]) : R(0); };
-  g.content = nodes.sum(held);
+  g.node_content = nodes.sum(held);
   g.blocked = nodes.sum(taken);
   if constexpr (VolumeRelaxed<M>) {
     const Stencil<R>& s = nodes.stencil;
@@ -48,11 +48,11 @@ void gather_clearance(const SetContext<R>& context, const ParticleNodes<R>& node
                       G2PResult<R>& g) {
   const ThinWalls& thin = context.around.thin_walls[block];
   if (const std::optional<Node<R>> exact = thin.any() ? thin.at(context.position(p)) : std::nullopt) {
-    g.away = vector_of(*exact), g.clearance = exact->m;
+    g.clearance_gradient = vector_of(*exact), g.clearance = exact->m;
     return;
   }
   const Nodes<float>& clearance = context.around.obstacles.clearance();
-  g.away = nodes.sum([&](std::size_t i) { return static_cast<Vec3<R>>(vector_of(clearance[i])); });
+  g.clearance_gradient = nodes.sum([&](std::size_t i) { return static_cast<Vec3<R>>(vector_of(clearance[i])); });
   g.clearance = nodes.sum([&](std::size_t i) { return static_cast<R>(clearance[i].m); });
 }
 
@@ -66,12 +66,13 @@ bool keeps_velocity(const SetContext<R>& context) {
 template <class R>
 void gather_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& nodes, std::size_t p, G2PResult<R>& g) {
   const Nodes<R>& old = context.world.grid.velocity_old[context.field];
-  g.own = {context.set.own[0][p], context.set.own[1][p], context.set.own[2][p]};
+  g.own_velocity = {context.set.own_velocity[0][p], context.set.own_velocity[1][p], context.set.own_velocity[2][p]};
   g.velocity_old = nodes.sum([&](std::size_t i) { return vector_of(old[i]); });
 }
 template <class R>
 void store_own_velocity(const SetContext<R>& context, std::size_t p, const PassParticle<R>& particle) {
-  for (std::size_t a = 0; a < 3; ++a) context.set.own[a][p] = particle.scattered.own[static_cast<int>(a)];
+  for (std::size_t a = 0; a < 3; ++a)
+    context.set.own_velocity[a][p] = particle.scattered.own_velocity[static_cast<int>(a)];
 }
 template <class R>
 void scatter_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& nodes,
@@ -80,8 +81,8 @@ void scatter_old_velocity(const SetContext<R>& context, const ParticleNodes<R>& 
   nodes.add(context.next.velocity_old[context.field], old.q, old.slope, old.mass);
 }
 
-/// Before a step in stages of viscosity: the momentum that stress gives in it, kept apart from that
-/// of the matter.
+/// Scatters the momentum of stress in a step in stages of viscosity, kept apart from that of the
+/// matter.
 template <class R>
 void scatter_stress(const SetContext<R>& context, const ParticleNodes<R>& nodes, const PassParticle<R>& particle) {
   Vec3<R> slopes[3];
@@ -98,8 +99,8 @@ void scatter_mixture(const SetContext<R>& context, const ParticleNodes<R>& nodes
   nodes.for_each([&](R w, std::size_t i) { share.add_to(context.next.mixture[i], w); });
 }
 
-/// In a stage of viscosity: the momentum that the viscous stress of the nodes' velocities gives in
-/// the whole step.
+/// Scatters the momentum that the viscous stress of the nodes' velocities gives in the whole step;
+/// for a stage of viscosity.
 template <class M, class R>
 void scatter_viscous_forces(const SetContext<R>& context) {
   const auto law = M::template Law<R>::from(context.set.values);

@@ -17,13 +17,13 @@ Vec3<R> vector_of(const Node<R>& node) {
 template <class R>
 class ParticleNodes {
  public:
-  /// Of a particle at `u`, as in ParticleSet::u, in a block of particles that reaches `blocks` of
-  /// the grid.
+  /// Makes the nodes of a particle at `u`, as in ParticleSet::u, in a block of particles that
+  /// reaches `blocks` of the grid.
   ParticleNodes(const StencilBlocks& blocks, const Vec3<R>& u) : stencil(make_stencil(u)), blocks_(blocks) {}
 
   const Stencil<R> stencil;
 
-  /// Where node (i, j, k) of the stencil, each in [0, 3), lies in a field of the grid.
+  /// Returns the index of node (i, j, k) of the stencil, each in [0, 3), in a field of the grid.
   std::size_t at(int i, int j, int k) const {
     // From the first node of the two by two by two blocks; stencils count from first_stencil(), the
     // second.

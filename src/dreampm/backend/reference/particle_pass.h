@@ -49,7 +49,7 @@ class ParticlePass {
       g.v = vector_of(found.value);
       for (int a = 0; a < 3; ++a) g.affine_moment[a] = vector_of(found.first_moment[a]);
 
-      if constexpr (M::info.liquid) g.excess = divergence_excess(found, nodes.stencil);
+      if constexpr (M::info.liquid) g.affine_excess = divergence_excess(found, nodes.stencil);
       if (measures<M>(context_.step.volume_relaxation)) gather_density<M>(context_, nodes, g);
       if (context_.around.colliders_near(block)) gather_clearance(context_, nodes, block, p, g);
       if (keeps_velocity(context_)) gather_old_velocity(context_, nodes, p, g);

@@ -1,5 +1,5 @@
-// What a pass reports of its particles: sums for the ledger and the next step, and their motion for
-// output. Nothing of it acts on the matter.
+// Sums over the particles of a pass, for the ledger and the next step, and their motion for output.
+// Nothing of it acts on the matter.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,7 @@ void add_to_sums(PassStats& sums, const SetContext<R>& context, const PassPartic
   const double mass = static_cast<double>(context.step.mass), volume = static_cast<double>(context.step.volume);
   const double kinetic = static_cast<double>(kinetic_energy(gathered, scattered, context.step)) * mass;
   sums.energy += {.kinetic = kinetic,
-                  .keeping = context.set.transfer.keeps_velocity() ? kinetic : 0,
+                  .kept_kinetic = context.set.transfer.keeps_velocity() ? kinetic : 0,
                   .viscous = static_cast<double>(response.dissipation.viscous) * volume,
                   .plastic = static_cast<double>(response.dissipation.plastic) * volume,
                   .relaxed = static_cast<double>(response.dissipation.relaxed) * volume};
@@ -37,13 +37,13 @@ void add_to_sums(PassStats& sums, const SetContext<R>& context, const PassPartic
     }
   if (shifts) {
     const Vec3d shifted = static_cast<Vec3d>(scattered.shifted) * (context.set.mass * context.world.dx);
-    sums.shifted += shifted, sums.turned += cross(shifted, static_cast<Vec3d>(scattered.own));
+    sums.shifted += shifted, sums.turned += cross(shifted, static_cast<Vec3d>(scattered.own_velocity));
   }
 }
 
 template <class R>
 void write_motion(const SetContext<R>& context, const PassParticle<R>& particle, typename Motion<R>::Set& motion) {
-  motion.velocity.push_back(particle.scattered.own);
+  motion.velocity.push_back(particle.scattered.own_velocity);
   motion.gradient.push_back(affine_velocity(particle.gathered.affine_moment, context.step.dx));
   motion.energy.push_back(particle.response.energy);
   motion.volume_ratio.push_back(particle.volume_ratio);

@@ -65,7 +65,7 @@ class Reference final : public Backend<R> {
   }
 
  private:
-  /// After every change of the block lists.
+  /// Must be called after every change of the block lists.
   void refresh(const World<R>& world) {
     around_.prepare(world);
     update_.prepare(world, around_.obstacles);

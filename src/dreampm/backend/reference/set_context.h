@@ -1,4 +1,4 @@
-// What the loops over one set of particles work with.
+// The data that loops over one set of particles work with.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace dreampm::reference {
 
-/// What particles have around them, by block of particles.
+/// The surroundings of particles, by block of particles.
 struct Surroundings {
   Obstacles obstacles;
   std::vector<StencilBlocks> blocks;  ///< of the grid, that the particles reach
   std::vector<ThinWalls> thin_walls;
 
-  /// After every change of the block lists.
+  /// Must be called after every change of the block lists.
   template <class R>
   void prepare(const World<R>& world) {
     obstacles.prepare(world);

@@ -16,11 +16,11 @@ class BoxRegion final : public Region {
   void distances(const PointColumns& points, double* to) const override {
     for_points(points, to, [half = half_](const Vec3d& p) { return from(half, p); });
   }
-  /// To the bits of Region::normal, which asks six times.
+  /// Returns the normal, with the bits of Region::normal, which asks six times.
   Vec3d normal(const Vec3d& p) const override {
     constexpr double h = normal_step;
     const Vec3d q{std::abs(p.x) - half_.x, std::abs(p.y) - half_.y, std::abs(p.z) - half_.z};
-    // Where one face is nearer than all others by more than the step the others change nothing.
+    // The nearest face decides alone where it is nearer than all others by more than the step.
     const int a = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
     const double others = std::max(q[(a + 1) % 3], q[(a + 2) % 3]), least = std::min(q[a], 0.0);
     const bool alone = others < least - 4 * h;

@@ -24,8 +24,8 @@ struct Brush {
 
   Box3d bounds() const { return {point - Vec3d{radius, radius, radius}, point + Vec3d{radius, radius, radius}}; }
 
-  /// As much as a constant acceleration of rate u, that of matter which is held back, over its own
-  /// width. Matter that goes round comes to u besides.
+  /// Returns the work per mass of a constant acceleration of rate u, that on matter which is held
+  /// back, over its own width. Matter that goes round comes to u besides.
   double head(const Passage& p) const {
     const Box3d box = bounds();
     Passage inside = p;

@@ -16,9 +16,9 @@ struct Drag {
       {"velocity", "m/s", nullptr, &Drag::velocity, -1e6, 1e6, false, false, "where to; at rest if absent"},
   };
 
-  /// As much as a constant acceleration of rate u, that of matter which is held back: rate (u -
-  /// v).v is never above rate u.v. Round by round matter comes to u besides. A drag to rest gives
-  /// nothing.
+  /// Returns the work per mass of a constant acceleration of rate u, that on matter which is held
+  /// back: rate (u - v).v is never above rate u.v. Round by round matter comes to u besides. A drag
+  /// to rest gives nothing.
   double head(const Passage& p) const {
     return head_of(velocity * rate, p) + (rate > 0 ? head_of_rounds(velocity, p) : 0);
   }

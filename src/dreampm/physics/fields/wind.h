@@ -17,11 +17,11 @@ struct Wind {
       {"coefficient", "1/m", &Wind::coefficient, nullptr, 0, 1e9, false, true, "3/8 c_d rho_air/(rho a) for drops"},
   };
 
-  /// As much as a constant acceleration of k |u| u, that of matter which is held back: k |u|^2 L
-  /// over a length L along the wind. With r = |v - u| the power k r (u.v - v^2) is never above k
-  /// |u| u.v: where u.v >= v^2, r is at most |u|; where u.v < 0, at least; and between it takes.
-  /// Held back, matter presses with all of that, even where the way is too short to come near u.
-  /// Round by round it comes to u besides.
+  /// Returns the work per mass of a constant acceleration of k |u| u, that on matter which is held
+  /// back: k |u|^2 L over a length L along the wind. With r = |v - u| the power k r (u.v - v^2) is
+  /// never above k |u| u.v: where u.v >= v^2, r is at most |u|; where u.v < 0, r is at least |u|;
+  /// between the two the wind takes energy. Held back, matter presses with all of that, even where
+  /// the way is too short to come near u. Round by round it comes to u besides.
   double head(const Passage& p) const {
     return head_of(velocity * (coefficient * length(velocity)), p) +
            (coefficient > 0 ? head_of_rounds(velocity, p) : 0);

@@ -12,9 +12,9 @@ namespace dreampm {
 
 /// A flat or inverted particle (s <= 0 has no logarithm) counts as pressed to this.
 inline constexpr double least_stretch = 1e-3;
-/// Of |dev e|: no principal one above 1/3.
+/// The bound of |dev e|: no principal deviatoric strain above 1/3.
 inline constexpr double most_shear = 0.408248290463863;
-/// Of tr e: with 1/3 from shear, each principal one stays above ln 0.2117.
+/// The bound of tr e: with 1/3 from shear, each principal strain stays above ln 0.2117.
 inline constexpr double most_crushed = -3.6;
 
 /// F, and the volume of gaps that opened beyond it: they have to close before matter presses again.
@@ -26,7 +26,7 @@ struct GappedState {
   Mat3<R> f;
   R v;  ///< gaps: ln of the volume that bears no stress, >= 0
   DM_FN R& operator[](int i) { return i < 9 ? f.m[i] : v; }
-  /// Without gaps, which take no room from a liquid.
+  /// Returns the volume ratio without gaps, which take no room from a liquid.
   DM_FN R volume_ratio() const { return determinant(f); }
 };
 

@@ -141,10 +141,11 @@ struct Newtonian {
       return select(change * change < R(S(1e-4)), change * R(S(1.0 / 6)) * small, large);
     }
 
-    /// Which part of a volume relaxation a reading of less density at a surface is worth. Rows
-    /// under a surface read too loose, and at rest have to press all the same: it counts as far as
-    /// `pace` times the strain of its time passes `loosening_strain`. The square: at rest the
-    /// strain is noise, and no rate of noise is small enough for minutes.
+    /// Returns the part of a volume relaxation that counts where a reading of less density comes
+    /// from a surface. Rows under a surface read too loose, and at rest have to press all the same:
+    /// the reading counts as far as `pace` times the strain of its time passes `loosening_strain`.
+    /// The strain is squared: at rest it is noise, and no rate of noise is small enough for
+    /// minutes.
     template <class R>
     static DM_FN R disturbed(const StrainIncrement<R>& at, const R& pace) {
       const R strain = at.strain / max(pace * R(S(VolumeCorrection::loosening_strain)), R(S(1e-30)));

@@ -35,7 +35,7 @@ inline constexpr Param sand_params[] = {
     {"friction_rise", "1", 0.26, 0, 1, false, "what sin phi gains in the fastest flow, where d is given"},
     Param{"inertial_number", "1", 0.279, 0.01, 10, true, "I0 = rate d/sqrt(p/rho) at half of the rise"}.shown(
         {.label = "inertial number of the rise"}),
-    {"relaxation", "1", 1, 0, 10, false, "strength of anchoring the volume to the measured density; 0 turns it off"},
+    {"relaxation", "1", 1, 0, 10, false, "strength of relaxing the volume to the measured density; 0 turns it off"},
 };
 inline constexpr Preset::Value dry_sand_values[] = {
     {"density", 1600}, {"youngs_modulus", 1.0e7}, {"poissons_ratio", 0.3}, {"friction_angle", 34}, {"cohesion", 0}};
@@ -73,7 +73,7 @@ struct Sand {
   /// Beyond this grains fly free of each other: the gradient that the grid measures says nothing of
   /// their distance.
   static constexpr double most_gaps = 1;
-  /// Of tr e at the tip: grains that are pulled apart by a tenth do not touch.
+  /// The tr e of the tip: grains that are pulled apart by a tenth do not touch.
   static constexpr double most_pulled = 0.1;
   /// Shear over which the volume is relaxed; over 1, drift is faster.
   static constexpr double relaxation_strain = 1.0 / 3;
@@ -150,7 +150,7 @@ struct Sand {
       set_strain(s.f, h, scale, trace, scale < one || trace < h.trace || trace > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.dissipation.plastic = projection_heat(sheared, swollen, h, R(mu), R(bulk));
-      // Of it, at the same stress, what volume relaxation did.
+      // The part of it, at the same stress, that volume relaxation did.
       r.dissipation.relaxed = R(bulk) * trace * (max(min(believed, R(tip)), R(S(most_crushed))) - trace);
       r.dissipation.plastic = r.dissipation.plastic - r.dissipation.relaxed;
       return r;

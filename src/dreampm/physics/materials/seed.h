@@ -58,8 +58,8 @@ struct Seed {
     DM_FN R volume_ratio() const { return determinant(f); }
   };
 
-  /// Where hardening ends: the least Jp, and the largest exponent. Steps could not follow much
-  /// more, and what was once pressed so hard stays so.
+  /// The end of hardening: the least Jp, and the largest exponent. Steps could not follow much
+  /// more, and matter once pressed so hard would stay so.
   static constexpr double least_jp = 0.1, most_hardened = 2;
   static constexpr double least_stretch = 1e-6;
 
@@ -79,7 +79,7 @@ struct Seed {
       const double high = 1 + values["upper"] * 1e-4;
       return {S(lame.mu * factor), S(lame.lambda * factor), S(1 / values["density"]), S(low), S(high),
               S(values["hardening"]), S(std::log(low)), S(std::log(high)), elastic, legacy,
-              // What keeps no shape does not harden.
+              // A material without shear stiffness does not harden.
               lame.mu > 0};
     }
 
@@ -124,7 +124,7 @@ struct Seed {
       const auto frees = strain(flown) < strain(old);
       const auto changed = (beyond && frees) || inverted;
       for (int i = 0; i < 3; ++i) d.s[i] = select(changed, select(beyond && frees, flown[i], old[i]), d.s[i]);
-      // As clamp_stretches does.
+      // The deformation gradient with clamped stretches, as in clamp_stretches.
       const Mat3<R> f = d.with(d.s);
       for (int k = 0; k < 9; ++k) state.f.m[k] = select(changed, f.m[k], state.f.m[k]);
     }

@@ -53,7 +53,7 @@ struct Viscoplastic {
   template <class R>
   using State = GappedState<R>;
 
-  /// Of tr e: pulled by more than a tenth, it is torn.
+  /// The tr e at which it tears: pulled by more than a tenth.
   static constexpr double most_pulled = 0.1;
   /// The viscosity of what does not flow, over G dt.
   static constexpr double rigid = 1e4;
@@ -134,8 +134,8 @@ struct Viscoplastic {
       set_strain(s.f, h, kept, t, kept < one || t < h.trace || t > h.trace);
       StressResponse<R> r = hencky_response(h, R(mu), R(bulk), R(inverse_density));
       r.implicit_viscosity = thickness * R(mu) * at.dt * R(inverse_density);
-      // Of the change of trace the volume relaxation has its part; what tears at the tip is
-      // plastic, as the flow is.
+      // The volume relaxation has its part of the change of trace; tearing at the tip is plastic,
+      // as the flow is.
       const R torn = (swollen - from) + (relaxed - h.trace);
       r.dissipation.plastic = projection_heat(sheared, h.trace + torn, h, R(mu), R(bulk));
       r.dissipation.relaxed = projection_heat(h.norm, h.trace + (from - relaxed), h, R(mu), R(bulk));

@@ -23,6 +23,6 @@ inline constexpr Param max_compression_param = Param{"max_compression",
                                                      "largest wanted relative change of volume; gives the bulk modulus"}
                                                    .shown({.basic = true});
 inline constexpr Param relaxation_param{
-    "relaxation", "1", 1, 0, 10, false, "strength of anchoring J to the measured density; 0 turns it off"};
+    "relaxation", "1", 1, 0, 10, false, "strength of relaxing J to the measured density; 0 turns it off"};
 
 }  // namespace dreampm

@@ -40,8 +40,8 @@ DM_FN R inverse_theta(R depth, R other) {
   return select(across, (in - out) / select(across, theta_way, R(S(1))), R(S(1)));
 }
 
-/// What a field q of cells takes from the velocity of the face between two of them, by their
-/// depths; `lightness`: the density of the liquid over that of the matter at the face.
+/// Returns the change of velocity that a field q of cells causes at the face between two of them,
+/// by their depths; `lightness`: the density of the liquid over that of the matter at the face.
 template <class R>
 DM_FN R slope_across(R q, R below, R lightness, R depth, R depth_below) {
   return (q - below) * lightness * inverse_theta(depth, depth_below);

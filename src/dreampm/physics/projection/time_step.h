@@ -12,7 +12,7 @@ namespace dreampm {
 /// are stopped.
 inline constexpr double usual_projection_cfl = 2, largest_projection_cfl = 3;
 
-/// How fast matter is.
+/// The speeds of matter.
 struct FlowSpeeds {
   double usual = 0;    ///< m/s, that all but 0.1 % of the particles keep
   double fastest = 0;  ///< m/s

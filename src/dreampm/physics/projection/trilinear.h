@@ -80,7 +80,7 @@ DM_FN void trilinear_slope(const Vec3<S>& way, const Samples<S>& samples, S& val
   value = side[0] + way.x * slope.x;
 }
 
-/// What a particle gives to a face: momentum over its mass, and weight.
+/// A particle's contribution to a face: momentum over its mass, and weight.
 template <class R>
 struct FaceSum {
   R momentum{}, weight{};
@@ -103,9 +103,9 @@ DM_FN void trilinear_shares(const Vec3<S>& way, Samples<S>& shares) {
   }
 }
 
-/// What a particle gives to the eight faces around it: momentum over its mass, and weights. `v`,
-/// `rise`: its velocity along the faces' axis, and what this changes by along x, y, z [over a
-/// cell].
+/// Computes a particle's contributions to the eight faces around it: momentum over its mass, and
+/// weights. `v`, `rise`: its velocity along the faces' axis, and the change of it along x, y, z
+/// [over a cell].
 template <class S>
 DM_FN void given_to_faces(const Vec3<S>& way, const S& v, const Vec3<S>& rise, Samples<S>& momenta,
                           Samples<S>& weights) {

@@ -1,7 +1,7 @@
-// What passes a plane along its normal: total [m^3] since the start, rate [m^3/s] as the mean since
-// the row before. Volume at rest, so that squeezing moves nothing. A particle counts by the part of
-// its cube that has passed, so that a block in even motion gives an even rate. On periodic axes it
-// counts each time round: between two rows it must move less than half a period.
+// The flux through a plane along its normal: total [m^3] since the start, rate [m^3/s] as the mean
+// since the row before. Volume at rest, so that squeezing moves nothing. A particle counts by the
+// part of its cube that has passed, so that a block in even motion gives an even rate. On periodic
+// axes it counts each time round: between two rows it must move less than half a period.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -34,7 +34,7 @@ class Flux final : public Probe<R> {
       particles.for_each([&](std::size_t p, const Vec3d& x) {
         Vec3d& before = last_of(particles.id(p));
         if (!std::isnan(before.x)) {
-          // Of the plane's copies the one nearest to the middle of the way.
+          // The copy of the plane that is nearest to the middle of the path.
           const Vec3d way = nearest_copy(now.world, x - before);
           const double middle = dot(nearest_copy(now.world, before + way * 0.5 - point_), normal_);
           const double half = 0.5 * dot(way, normal_);
@@ -63,7 +63,7 @@ class Flux final : public Probe<R> {
   }
 
  private:
-  /// Where the particle was last seen [m].
+  /// Returns the last seen place of the particle [m].
   Vec3d& last_of(std::uint32_t id) {
     if (last_.size() <= id) last_.resize(id + std::size_t(1), {unseen, unseen, unseen});
     return last_[id];

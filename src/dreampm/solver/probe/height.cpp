@@ -50,7 +50,7 @@ class Height final : public Probe<R> {
         const double share = overlap(x.x, h, column.min.x, column.max.x) * overlap(x.z, h, column.min.z, column.max.z);
         if (share == 0) return;
         const double v = share * set.rest_volume * static_cast<double>(now.motion.sets[s].volume_ratio[p]);
-        // What reaches below the floor belongs to the first slice.
+        // Matter that reaches below the floor belongs to the first slice.
         const int first = std::max(0, static_cast<int>(std::floor((x.y - h / 2 - floor) / slice)));
         const int last = std::max(first, static_cast<int>(std::floor((x.y + h / 2 - floor) / slice)));
         if (volume.size() <= static_cast<std::size_t>(last)) volume.resize(static_cast<std::size_t>(last) + 1);

@@ -1,4 +1,4 @@
-// What comes in by an emitter or goes out by a sink: rate [m^3/s] as the mean since the row before,
+// The inflow of an emitter or outflow of a sink: rate [m^3/s] as the mean since the row before,
 // total [m^3] since the start, as volume at rest, and the count of particles.
 #include <algorithm>
 

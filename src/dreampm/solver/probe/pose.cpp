@@ -1,6 +1,6 @@
-// Where a collider or rigid body stands, and how it moves: of a rigid body the center of mass, of
-// another collider the point that it turns about; the rotation of the shape as the scene gives it,
-// as a quaternion; velocity [m/s] of that point, and spin [rad/s].
+// The pose and motion of a collider or rigid body: for a rigid body the center of mass, for another
+// collider the point that it turns about; the rotation of the shape as the scene gives it, as a
+// quaternion; velocity [m/s] of that point, and spin [rad/s].
 #include "dreampm/solver/probe/probe.h"
 
 namespace dreampm {

@@ -47,14 +47,14 @@ class Probe {
   virtual ~Probe() = default;
   /// Names of what sample returns, beside the time.
   virtual std::vector<std::string> columns() const = 0;
-  /// What sample reads.
+  /// Returns the fields that sample reads.
   virtual MatterFields fields() const = 0;
   /// Called after every step.
   virtual void accumulate(const StepSums&) {}
   /// One row. Nothing if there is none yet: a mean over an interval has no value at the start. NaN:
   /// not defined now (the velocity where nothing is).
   virtual std::optional<std::vector<double>> sample(const ProbeContext<R>& now) = 0;
-  /// Its state from row to row, for a checkpoint.
+  /// Returns its state from row to row, for a checkpoint.
   virtual std::vector<double> memory() const { return {}; }
   virtual void restore(const std::vector<double>&) {}
 };

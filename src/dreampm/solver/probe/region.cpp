@@ -1,4 +1,4 @@
-// What lies within a shape: volume [m^3], mass [kg], center of mass [m], mean J, mean speed [m/s],
+// The matter within a shape: volume [m^3], mass [kg], center of mass [m], mean J, mean speed [m/s],
 // of the particles whose centers are inside. NaN for the means of nothing.
 #include <cmath>
 #include <limits>

@@ -11,8 +11,8 @@
 
 namespace dreampm {
 
-/// Where the columns of cells around a block of particles lie in the arrays of a grid: those that
-/// its particles reach, and `reach` cells more to each side.
+/// The window of a block of particles: the columns of cells around it in the arrays of a grid. It
+/// holds the cells that its particles reach, and `reach` cells more to each side.
 template <int reach>
 class Window {
  public:
@@ -40,10 +40,10 @@ class Window {
   std::size_t columns_[width * width];
 };
 
-/// What a particle carries along an axis, as given_to_faces() takes it.
+/// Loads the motion of a particle along an axis, as given_to_faces() takes it.
 template <class R>
 DM_FN void motion_along(const ParticleSet<R>& set, std::size_t p, std::size_t axis, R dx, Four<R>& motion) {
-  motion = Four<R>{set.own[axis][p], set.gradient[3 * axis][p] * dx, set.gradient[3 * axis + 1][p] * dx,
+  motion = Four<R>{set.own_velocity[axis][p], set.gradient[3 * axis][p] * dx, set.gradient[3 * axis + 1][p] * dx,
                    set.gradient[3 * axis + 2][p] * dx};
 }
 

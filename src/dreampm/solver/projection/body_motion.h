@@ -1,5 +1,4 @@
-// What rigid bodies are to the equations of the projection: six velocities each, that impulses
-// change.
+// Rigid bodies in the equations of the projection: six velocities each, that impulses change.
 #pragma once
 #include <array>
 

@@ -11,14 +11,15 @@
 
 namespace dreampm {
 
-/// With q the impulse of cells and V the velocities of the bodies, A q = b(V) and
-/// V = V* + M^-1 rho dx^3 J q. b is linear, and b(V) = b(V*) - J^T (V - V*). So J^T M^-1 rho dx^3 J
-/// is added to the matrix. J q is the sum over the faces of A' (q_low - q_high) times the face's
-/// velocity per velocity of the body, A' the part of the face that the body closes.
+/// The pressure on rigid bodies, as a term of the matrix. With q the impulse of cells and V the
+/// velocities of the bodies, A q = b(V) and V = V* + M^-1 rho dx^3 J q. b is linear, and b(V) =
+/// b(V*) - J^T (V - V*). So J^T M^-1 rho dx^3 J is added to the matrix. J q is the sum over the
+/// faces of A' (q_low - q_high) times the face's velocity per velocity of the body, A' the part of
+/// the face that the body closes.
 template <class R>
 class BodyPressure final : public AddedOperator<R> {
  public:
-  /// Before the solves of a step of `density` [kg/m^3]: bodies as they stand.
+  /// Begins the solves of a step of `density` [kg/m^3] with the bodies as they stand.
   void begin(const World<R>& world, double density);
   bool any() const { return !bodies_.empty(); }
   /// Finds the cells of liquid beside bodies; once the depths are known.
@@ -48,7 +49,7 @@ class BodyPressure final : public AddedOperator<R> {
   };
   /// The velocity of what it closes of a face for each component of a body's twist, times the part.
   Six column(const World<R>& world, std::uint32_t body, const typename CutCells<R>::ClosedFace& face);
-  /// Of each body its sum J x, and what it gains by it.
+  /// Computes for each body its sum J x, and the velocity that it gains by it.
   void sum_columns(const LargeVector<R>& x);
   /// Adds to the bodies' twists what they gain, `times` so much.
   void gain(World<R>& world, double times);

@@ -10,7 +10,7 @@
 namespace dreampm {
 namespace {
 
-/// Before the first rows (CellRows::Tile::place_before).
+/// Number of rows before the first rows (CellRows::Tile::place_before).
 constexpr std::uint32_t rows_outside = 2;
 /// Tiles that a thread takes at a time.
 constexpr std::size_t tiles_at_once = 64;

@@ -26,13 +26,11 @@ constexpr Vec3i tile_of_block(const Vec3i& block) { return {block.x, block.y, bl
 /// The tile of a cell, for any sign.
 constexpr Vec3i tile_of_cell(const Vec3i& cell) { return {cell.x >> 2, cell.y >> 2, cell.z >> 3}; }
 
-/// Where each row of cells lies in the arrays of a grid. Rows that follow one another along z are
+/// The place of each row of cells in the arrays of a grid. Rows that follow one another along z are
 /// one piece of memory, with a row before and after that belongs to no cell, so that the neighbors
 /// of a cell along z are those beside it in memory. Values of rows that belong to no cell stand for
-/// all that is outside.
-///
-/// `begin` says which tiles there may be, `mark` and `spread` which cells are wanted, and `finish`
-/// lays the rows that hold any of them.
+/// all that is outside. `begin` says which tiles there may be, `mark` and `spread` which cells are
+/// wanted, and `finish` lays the rows that hold any of them.
 class CellRows {
  public:
   struct Row {
@@ -62,7 +60,7 @@ class CellRows {
 
   /// The length of an array over all rows.
   std::size_t size() const { return row_count_ * row_cells; }
-  /// In the order of their memory.
+  /// Returns the rows in the order of their memory.
   std::span<const Row> rows() const { return rows_; }
   /// Sets what belongs to no cell in an array over all rows.
   template <class T>

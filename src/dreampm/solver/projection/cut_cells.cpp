@@ -68,7 +68,7 @@ struct ClosedCube {
   Vec3d moment;
 };
 
-/// Of a square whose corners are that far [edges] from a surface.
+/// Returns the closed part of a square whose corners are that far [edges] from a surface.
 ClosedSquare closed_square(double low, double along, double up, double both) {
   if (std::min({low, along, up, both}) > 0) return {};
   if (!(std::max({low, along, up, both}) > 0)) return {1, 0.5, 0.5};
@@ -86,7 +86,7 @@ ClosedSquare closed_square(double low, double along, double up, double both) {
   return closed;
 }
 
-/// Of a cube with such corners, by x, y, z.
+/// Returns the closed part of a cube with such corners, by x, y, z.
 ClosedCube closed_cube(const double (&at)[8]) {
   if (*std::min_element(at, at + 8) > 0) return {};
   if (!(*std::max_element(at, at + 8) > 0)) return {1, {0.5, 0.5, 0.5}};
@@ -105,8 +105,8 @@ ClosedCube closed_cube(const double (&at)[8]) {
   return closed;
 }
 
-/// What colliders leave of a face, and the middle of what they close, along the two axes after its
-/// own, from 0 to 1.
+/// The part of a face that colliders leave open, and the middle of the closed part, along the two
+/// axes after its own, from 0 to 1.
 struct FacePart {
   double open = 1, along = 0.5, up = 0.5;
 };
@@ -127,7 +127,7 @@ FacePart face_part(const NodeDistances& d, const Vec3i& low, int axis) {
   return {1 - closed.part, closed.along / closed.part, closed.up / closed.part};
 }
 
-/// What colliders fill of the eighths of a block's cells, and of those on its low sides.
+/// The volume that colliders fill of each eighth of a block's cells, and of those on its low sides.
 class Eighths {
  public:
   explicit Eighths(const NodeDistances& d) {
@@ -138,7 +138,8 @@ class Eighths {
       filled_[static_cast<std::size_t>(n)] = closed_cube(at);
     }
   }
-  /// Of the cube of eight whose first is `low`, with its moment about its low corner [cells].
+  /// Returns the closed part of the cube of eight whose first is `low`, with its moment about its
+  /// low corner [cells].
   ClosedCube of_cube(const Vec3i& low) const {
     ClosedCube filled;
     for (int n = 0; n < 8; ++n) {
@@ -249,7 +250,7 @@ void CutCells<R>::see(const World<R>& world) {
                       !std::equal(placed_.begin(), placed_.end(), world.colliders.begin(),
                                   [](const auto& a, const auto& b) { return a.collider.name == b.name; });
   if (others) blocks_.clear();
-  // What is near a collider where it was, and where it is.
+  // The moved colliders, where they were and where they are.
   std::vector<PlacedCollider> moved;
   std::vector<PlacedCollider> now;
   for (std::size_t c = 0; c < world.colliders.size(); ++c) {

@@ -13,8 +13,8 @@
 
 namespace dreampm {
 
-/// What the pressure of a cell grows by in a cell's width, in the units of MacGrid::impulse: by
-/// gravity, which gave `gained` [m/s]. Films are too thin for all of that.
+/// Returns the hydrostatic change of a cell's pressure over a cell's width, in the units of
+/// MacGrid::impulse: by gravity, which gave `gained` [m/s]. Films are too thin for all of that.
 inline Vec3d pressure_slope(double depth, const Vec3d& gained) {
   return depth > 0 ? gained * std::min(1.0, 2 * depth) : Vec3d{};
 }
@@ -33,7 +33,7 @@ class CutCells {
   /// Takes the colliders as they stand now, for Collisions; forgets what it knows of blocks near
   /// those that moved.
   void see(const World<R>& world);
-  /// Whether there are colliders.
+  /// True if there are colliders.
   bool any() const { return !placed_.empty(); }
 
   /// The low face of a cell along an axis, of which a collider closes a part.
@@ -82,8 +82,8 @@ class CutCells {
     });
   }
 
-  /// What colliders fill of a cell, and of cubes of that size around the middles of its low face
-  /// of an axis and of its edge along an axis on its low sides.
+  /// The part of a cell that colliders fill, and of cubes of that size around the middles of its
+  /// low face of an axis and of its edge along an axis on its low sides.
   struct FilledParts {
     std::size_t place;
     R cell;
@@ -106,9 +106,9 @@ class CutCells {
    public:
     /// `dt`: of the step [s].
     Collisions(const World<R>& world, const CutCells& cells, const Vec3i& block, double dt);
-    /// Whether a collider is near at all.
+    /// True if a collider is near at all.
     bool is_needed() const { return view_.has_value(); }
-    /// What a particle came to last.
+    /// The surface that a particle came to last.
     struct Surface {
       Vec3d normal;     ///< outward; 0 where it came to none
       Vec3d velocity;   ///< of the collider there [m/s]
@@ -130,17 +130,17 @@ class CutCells {
   };
 
  private:
-  /// Of the 64 cells of a block that a collider cuts or fills.
+  /// Data of the 64 cells of a block that a collider cuts or fills.
   struct Block {
     std::array<std::array<R, block_nodes>, 3> open;  ///< of the low faces
     /// The middle of what is not, along the two axes after the face's own, from 0 to 1.
     std::array<std::array<R, block_nodes>, 3> along, up;
     std::array<R, block_nodes> room;                ///< as MacGrid::room
     std::array<std::array<R, block_nodes>, 3> gap;  ///< as MacGrid::gap
-    /// As MacGrid::owner.
+    /// The owner, as MacGrid::owner.
     std::array<std::array<std::uint16_t, block_nodes>, 3> owner;
-    /// Of the cells: the part that colliders fill, its middle from their low corner, and the number
-    /// of the nearest collider where they fill any.
+    /// For each cell: the part that colliders fill, its middle from the cell's low corner, and the
+    /// number of the nearest collider where they fill any.
     std::array<R, block_nodes> filled;
     std::array<Vec3<R>, block_nodes> filled_middle;
     std::array<std::uint16_t, block_nodes> filler;
@@ -153,7 +153,8 @@ class CutCells {
     if (found == blocks_.end() || !found->second) return;
     grid.cells.for_block(block, [&](std::size_t n, std::size_t place) { body(*found->second, n, place); });
   }
-  /// From the low corner of a cell to the middle of what colliders close of its low face [cells].
+  /// Returns the vector from the low corner of a cell to the middle of the closed part of its low
+  /// face [cells].
   static Vec3d middle_of_closed(const Block& cut, std::size_t axis, std::size_t n);
   /// Null where no collider is.
   std::unique_ptr<Block> cut_block(const World<R>& world, const Vec3i& block) const;

@@ -9,7 +9,7 @@
 namespace dreampm {
 namespace {
 
-/// Where fields act [m]; everywhere where one has no bounds.
+/// Returns the box in which fields act [m]; everywhere if one has no bounds.
 template <class R>
 Box3d reach_of(const World<R>& world) {
   constexpr double far = 1e30;

@@ -1,5 +1,5 @@
-// What acts on the faces of a step of the projection before its pressure: force fields, damping,
-// the friction of walls.
+// Forces on the faces of a step of the projection before its pressure: force fields, damping, the
+// friction of walls.
 #pragma once
 #include "dreampm/backend/impulse_sum.h"
 #include "dreampm/solver/projection/mac_grid.h"
@@ -15,7 +15,7 @@ ImpulseSum apply_fields(const World<R>& world, MacGrid<R>& grid, double kick);
 template <class R>
 void damp(MacGrid<R>& grid, double part, const Vec3d& gained);
 
-/// What a boundary layer is made of.
+/// The parameters of a boundary layer.
 struct SkinFriction {
   double viscosity;  ///< m^2/s
   double dx, kick;   ///< m, s

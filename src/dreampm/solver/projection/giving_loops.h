@@ -1,5 +1,5 @@
-// What the particles of a block give to the staggered grid, over any lane type. The sums are made
-// close together, and added to the grid's in the end.
+// Contributions of the particles of a block to the staggered grid, over any lane type. The sums are
+// made close together, and added to the grid's in the end.
 #pragma once
 #include "dreampm/math/four.h"
 #include "dreampm/solver/projection/kernels.h"
@@ -8,13 +8,13 @@
 
 namespace dreampm {
 
-/// Where the sums of a block lie until all are made. Of faces two that follow one another along z
-/// have one place, so that particles of one cell write the same.
+/// The sums of a block, until all are made. Two faces that follow one another along z have one
+/// place, so that particles of one cell write the same.
 struct GivenCells {
   static constexpr int width = block_width + 2, cells = block_width + 1;
   static constexpr int along_z = 4, along_y = cells * along_z, along_x = width * along_y, size = width * along_x;
 };
-/// And those of centers: eight shares for each cell.
+/// The sums at cell centers: eight shares for each cell.
 struct GivenCenters {
   static constexpr int cells = block_width + 1;
   static constexpr int along_z = 8, along_y = cells * along_z, along_x = cells * along_y, size = cells * along_x;
@@ -51,7 +51,7 @@ DM_FN void give_some(const BlockGiving<Scalar<S>>& block, std::size_t p, int n, 
     Vec3<S> rise;
     for (int t = 0; t < 3; ++t) rise[t] = Row::load(from.gradient[3 * a + t] + p, n) * dx;
     Samples<S> momenta, weights;
-    given_to_faces(place.way_of_faces(a), Row::load(from.own[a] + p, n), rise, momenta, weights);
+    given_to_faces(place.way_of_faces(a), Row::load(from.own_velocity[a] + p, n), rise, momenta, weights);
 #pragma GCC unroll 4
     for (int c = 0; c < 4; ++c) {
       const S(&m)[2] = momenta.at[c >> 1][c & 1], (&w)[2] = weights.at[c >> 1][c & 1];

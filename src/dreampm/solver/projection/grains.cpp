@@ -9,7 +9,7 @@
 namespace dreampm {
 namespace {
 
-/// Where grains are at all on a face, over the mass of a cell of liquid.
+/// The least mass of grains at a face that counts, over the mass of a cell of liquid.
 constexpr double least_grains = 1e-6;
 
 template <class R>
@@ -18,7 +18,7 @@ double diameter_of(const ParticleSet<R>& set) {
   return given > 0 ? given : GrainNumbers::diameter;
 }
 
-/// Of the sets of a world: that of the finest.
+/// Returns the drag of the set with the finest grains.
 template <class R>
 double drag_of(const World<R>& world) {
   const ParticleSet<R>* const liquid = liquid_of(world);
@@ -116,7 +116,7 @@ void Grains<R>::part(World<R>& world, MacGrid<R>& grid, const Vec3d& gained, con
         const std::size_t f = at.own + l, below = at.low[a] + l;
         const R mass = grid.grain_sums[a][f].weight;
         if (!(mass > static_cast<R>(least_grains))) continue;
-        // What damping, fields and viscosity did acts on both.
+        // Damping, fields and viscosity act on both.
         const R changed = grid.free[a][f] - flux_[a][f];
         R& velocity = grid.velocity[a][f];
         const bool pressed = is_known(velocity) && grid.open[a][f] > R(0);

@@ -13,9 +13,10 @@ namespace dreampm {
 
 /// Numbers of grains in a liquid.
 struct GrainNumbers {
-  /// Of the volume of a heap at rest: grains. The rest are pores.
+  /// The volume fraction of grains in a heap at rest. The rest are pores.
   static constexpr double packing = 0.6;
-  /// Of a face or a cell at most, where grains are pressed together more than they can be.
+  /// The largest volume fraction in a face or a cell, where grains are pressed together more than
+  /// they can be.
   static constexpr double most_packing = 0.85;
   /// m, of a grain, where the material gives no `grain_size`.
   static constexpr double diameter = 1e-3;
@@ -32,15 +33,16 @@ template <class R>
 class Grains {
  public:
   bool any() const { return any_; }
-  /// After particles_to_grid: what grains are to cells and faces.
+  /// Finds the shares of grains in cells and faces; after particles_to_grid.
   void to_grid(const World<R>& world, MacGrid<R>& grid);
-  /// After mix_velocities and find_depths: on faces with grains the free velocity becomes that of
-  /// the volume of both, after `kick` [s] of drag, and the lightness what the pressure changes of
-  /// it.
+  /// Mixes velocities; after mix_velocities and find_depths. On faces with grains the free velocity
+  /// becomes that of the volume of both, after `kick` [s] of drag, and the lightness becomes the
+  /// change of it by pressure.
   void mix(const World<R>& world, MacGrid<R>& grid, double kick);
-  /// After apply_pressure: the velocities of faces become those of the liquid alone. Particles of
-  /// grains get what the pressure and the drag change of their velocity and its slope, and
-  /// `pushes`. Gravity gives `gained` [m/s]; `lasts`: of cells, what lasts of the pressure.
+  /// Separates liquid and grains; after apply_pressure. The velocities of faces become those of the
+  /// liquid alone. Particles of grains get the change of their velocity and its slope by pressure
+  /// and drag, and `pushes`. Gravity gives `gained` [m/s]; `lasts`: of cells, the lasting part of
+  /// the pressure.
   void part(World<R>& world, MacGrid<R>& grid, const Vec3d& gained, const LargeVector<R>& lasts, Pushes<R>& pushes);
 
  private:

@@ -29,7 +29,7 @@ DM_FN auto two_by_two(const float* first, const float* second) {
 #endif
 }
 
-/// Of the floats of two vectors, by fours, the first and third of each, or the second and fourth.
+/// Returns the first and third float of each four of two vectors, or the second and fourth.
 template <int odd, class V>
 DM_FN V every_other(V a, V b) {
   constexpr int o = odd, n = W;

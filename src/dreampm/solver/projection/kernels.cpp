@@ -18,7 +18,7 @@ const ProjectionKernels<R>& plain_kernels() {
   return table;
 }
 
-/// Of a set that the machine has: another's must not be called.
+/// Returns the table of an instruction set that the machine has: another's must not be called.
 const ProjectionKernels<float>& table_of(std::string_view isa) {
 #if defined(__x86_64__)
   return isa == "avx512" ? avx512::projection_table()

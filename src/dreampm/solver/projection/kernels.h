@@ -13,24 +13,25 @@
 
 namespace dreampm {
 
-/// What is looked up beyond the cells around a block, one particle at a time. Places are in cells
-/// from the first of the block's window.
+/// Functions that look up values beyond the cells around a block, one particle at a time. Places
+/// are in cells from the first of the block's window.
 template <class R>
 struct Beyond {
   const void* context;
   /// The velocity that moves particles at `x`.
   void (*moving)(const void* context, const R (&x)[3], R (&v)[3]);
-  /// Of each component of the velocity the value and its slopes [1/cell].
+  /// Finds each component of the velocity, and its slopes [1/cell].
   void (*slope)(const void* context, const R (&x)[3], R (&found)[3][4]);
   /// Puts a particle that came from `start` out of colliders, by its number among those of its set;
   /// returns the energy that it loses [J]. Null where no collider is near.
   double (*put_out)(const void* context, std::size_t particle, const R (&start)[3], R (&x)[3]);
 };
 
-/// Where the particles of a block lie, one set's; T: R, or const R where they stay as they are.
+/// The columns of the particles of a block, one set's; T: R, or const R where they stay as they
+/// are.
 template <class T>
 struct BlockColumns {
-  T *u[3], *own[3], *gradient[9];  ///< whole columns
+  T *u[3], *own_velocity[3], *gradient[9];  ///< whole columns
   std::size_t begin, end;
 };
 
@@ -38,7 +39,7 @@ struct BlockColumns {
 /// of two cells, and one.
 inline constexpr int reach_ahead = 2;
 
-/// What the particles of one block take from the grid, and where they go.
+/// Input and output of the loop in which the particles of one block take from the grid and move.
 template <class R>
 struct BlockTaking {
   BlockColumns<R> particles;
@@ -51,14 +52,14 @@ struct BlockTaking {
   Beyond<R> beyond;
 };
 
-/// How the particles of a block went.
+/// Statistics of the motion of the particles of a block.
 struct BlockMove {
   double fastest2 = 0;  ///< m^2/s^2
-  double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2],
-  double slope2 = 0;    ///< and of their gradients [1/s^2]
+  double speed2 = 0;    ///< sum of the squares of velocities [m^2/s^2]
+  double slope2 = 0;    ///< sum of the squares of velocity gradients [1/s^2]
   double lost = 0;      ///< J, at colliders
   bool finite = true;
-  bool far = false;  ///< whether any went more than a block
+  bool far = false;  ///< true if any went more than a block
 
   void add(const BlockMove& b) {
     fastest2 = b.fastest2 > fastest2 ? b.fastest2 : fastest2;
@@ -67,7 +68,7 @@ struct BlockMove {
   }
 };
 
-/// What the particles of one block give to the grid.
+/// Input and output of the loop in which the particles of one block give to the grid.
 template <class R>
 struct BlockGiving {
   BlockColumns<const R> particles;
@@ -109,10 +110,10 @@ struct MatrixRows {
 
 /// Sums over the faces of some rows, each by the particles of liquid that it has.
 struct EnergySums {
-  double given = 0;      ///< u^2/2 [m^2/s^2] by the particles,
-  double projected = 0;  ///< and in the end
-  /// What was lost between: that by which a face is slower than gravity would have it, times the
-  /// mean of its speeds before and after [m^2/s^2].
+  double given = 0;      ///< u^2/2 [m^2/s^2] as scattered from particles
+  double projected = 0;  ///< u^2/2 [m^2/s^2] after the pressure
+  /// The loss between them: the velocity that a face lacks beside that by gravity, times the mean
+  /// of its speeds before and after [m^2/s^2].
   double lost = 0;
   void add(const EnergySums& b) { given += b.given, projected += b.projected, lost += b.lost; }
 };

@@ -27,9 +27,10 @@ void mark_matter(const World<R>& world, CellRows& cells) {
   });
 }
 
-/// Of the faces beside liquid, to which velocities are extended (extend_velocities).
+/// The number of layers of faces beside liquid to which velocities are extended
+/// (extend_velocities).
 constexpr int extended_layers = 2;
-/// From liquid to the cells that colliders cut which it may fill (find_depths).
+/// Number of cells from liquid to cut cells that it may fill (find_depths).
 constexpr int filled_by_colliders = 4;
 
 }  // namespace
@@ -42,7 +43,7 @@ void MacGrid<R>::lay(const World<R>& world) {
     if (world.periodic[static_cast<std::size_t>(a)]) period[a] = (world.high[a] - world.low[a]) / tile;
   }
   low = world.low, high = world.high;
-  // What passes an open wall is taken out a box length behind it, when particles are sorted.
+  // Matter that passes an open wall is taken out a box length behind it, when particles are sorted.
   for (int a = 0; a < 3; ++a) {
     const auto side = static_cast<std::size_t>(2 * a);
     const std::int32_t beyond = 2 * (world.high[a] - world.low[a]) + 2 * block_width;
@@ -61,7 +62,7 @@ void MacGrid<R>::lay(const World<R>& world) {
   holding.colliders.clear();
   for (const Collider& c : world.colliders) holding.colliders.push_back(c.contact() == WallType::stick);
   const std::size_t size = cells.size();
-  // Where all cells are written before they are read.
+  // Sets the cells outside alone where all others are written before they are read.
   const auto lay_outside = [&](Field& field, R value) {
     resize_for_overwrite(field, size);
     cells.fill_outside(field.data(), value);

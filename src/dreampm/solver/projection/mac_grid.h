@@ -15,10 +15,10 @@
 
 namespace dreampm {
 
-/// Whether matter of that type is moved by the projection.
+/// True if the projection moves matter of that type.
 inline bool is_projected(std::string_view material) { return material == "newtonian"; }
-/// Whether the particles of a set are: others go by explicit steps beside
-/// it (solver/projection/solids.h).
+/// True if the projection moves the particles of a set: others go by explicit steps beside it
+/// (solver/projection/solids.h).
 template <class R>
 bool is_projected(const ParticleSet<R>& set) {
   return is_projected(set.material);
@@ -31,7 +31,7 @@ const ParticleSet<R>* liquid_of(const World<R>& world) {
   return found == world.sets.end() ? nullptr : &*found;
 }
 
-/// Which walls and colliders hold liquids: along others they slip.
+/// The walls and colliders that hold liquids: along others they slip.
 struct Holding {
   std::array<bool, 6> walls{};  ///< in the order of World::walls
   std::vector<bool> colliders;  ///< in the order of World::colliders
@@ -49,14 +49,15 @@ struct MacGrid {
 
   std::array<LargeVector<FaceSum<R>>, 3> sums;  ///< of faces: what particles gave [m/s, 1]
   std::array<Field, 3> open;                    ///< of faces: the part that is no wall [1]
-  /// Of faces: of what closes them [m/s]; empty where all colliders stand.
+  /// For each face, the velocity of the solid that closes it [m/s]; empty where all colliders are
+  /// at rest.
   std::array<Field, 3> solid;
-  /// Of faces that colliders close in part: the number of the nearest, else `no_owner`; empty
-  /// without colliders.
+  /// For each face that colliders close in part, the number of the nearest one, else `no_owner`;
+  /// empty without colliders.
   std::array<LargeVector<std::uint16_t>, 3> owner;
   static constexpr std::uint16_t no_owner = 0xffff;
-  /// Of faces: from their middle to the nearest collider [cells], negative inside; `far` where none
-  /// is near. Empty where no collider holds liquids.
+  /// For each face, the distance from its middle to the nearest collider [cells], negative inside;
+  /// `far` where none is near. Empty where no collider holds liquids.
   std::array<Field, 3> gap;
   static constexpr R far = R(10);
   std::array<Field, 3> free;       ///< of faces: before the pressure [m/s]
@@ -70,14 +71,14 @@ struct MacGrid {
   LargeVector<std::uint8_t> held;  ///< of cells: whether a particle is within
   Field scratch;
 
-  // Of matter beside the liquid; empty without.
+  // Matter beside the liquid; empty without.
   std::array<LargeVector<FaceSum<R>>, 3> solid_sums;  ///< of faces: as `sums`, over the mass of a cell of liquid
   std::array<Field, 3> solid_free;                    ///< of faces: as `free`
   Field solid_volume;                                 ///< of cells: its part of `density`
-  // Of grains; empty without.
+  // Grains; empty without.
   std::array<LargeVector<FaceSum<R>>, 3> grain_sums;  ///< of faces, as `solid_sums`
   Field grain_volume;                                 ///< of cells: their part of `density`, without pores
-  /// Of faces: the density of the liquid over that of the matter there; empty: 1.
+  /// For each face, the density of the liquid over that of the matter there; empty: 1.
   std::array<Field, 3> lightness;
 
   R lightness_of(std::size_t axis, std::size_t face) const {
@@ -85,7 +86,7 @@ struct MacGrid {
   }
 
   const RowKernels<R>* kernels = &projection_kernels<R>("auto").rows;
-  /// Those rows of it, as kernels see them.
+  /// Returns those rows of the grid, as kernels see them.
   GridRows<R> as_rows(std::span<const CellRows::Row> rows) {
     GridRows<R> grid{rows.data(), low, high, {}, {}, {}, {}, depth.data(), impulse.data(), {}, {}, {}};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -112,7 +113,7 @@ struct MacGrid {
     if (!field.empty()) cells.wrap(field.data());
   }
 
-  /// Whether a cell is liquid, and so are all that a face which is not closed leads to.
+  /// True if a cell is liquid, and so are all cells to which its open faces lead.
   bool is_deep(const RowPlaces& at, std::size_t lane) const {
     bool deep = depth[at.own + lane] > R(0);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -123,11 +124,11 @@ struct MacGrid {
     return deep;
   }
   bool within(int axis, std::int32_t cell) const { return cell >= low[axis] && cell < high[axis]; }
-  /// Whether the middle of a face lies in a collider that holds liquids.
+  /// True if the middle of a face lies in a collider that holds liquids.
   bool is_in_holder(std::size_t axis, std::size_t face) const {
     return !gap[axis].empty() && gap[axis][face] <= R(0) && is_held(axis, face);
   }
-  /// Whether a collider holds what is at a face that it closes.
+  /// True if a collider holds the matter at a face that it closes.
   bool is_held(std::size_t axis, std::size_t face) const {
     const std::uint16_t number = owner[axis].empty() ? no_owner : owner[axis][face];
     return number != no_owner && holding.colliders[number];
@@ -149,15 +150,16 @@ struct MacGrid {
       if (high_lane >= 0 && high_lane < row_cells) body(high_lane, 5);
     }
   }
-  /// Of a row of cells: the numbers [first, second) of those between the walls; none where the row
-  /// itself is outside of them.
+  /// Returns the numbers [first, second) of the cells of a row between the walls; none where the
+  /// row itself is outside of them.
   std::array<int, 2> lanes_within(const CellRows::Row& row) const {
     if (!within(0, row.first.x) || !within(1, row.first.y)) return {0, 0};
     return {std::clamp(low.z - row.first.z, 0, row_cells), std::clamp(high.z - row.first.z, 0, row_cells)};
   }
 };
 
-/// From the low corner of a cell to the middle of its low or high face of an axis [cells].
+/// Returns the vector from the low corner of a cell to the middle of its low or high face of an
+/// axis [cells].
 inline Vec3d face_middle(int axis, bool high) {
   Vec3d middle{0.5, 0.5, 0.5};
   middle[axis] = high ? 1 : 0;

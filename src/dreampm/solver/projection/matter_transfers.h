@@ -10,19 +10,19 @@
 
 namespace dreampm {
 
-/// Whether a set is of grains that liquid flows between (solver/projection/grains.h).
+/// True if a set is of grains that liquid flows between (solver/projection/grains.h).
 template <class R>
 bool is_grains(const ParticleSet<R>& set) {
   return set.material == "sand";
 }
 
-/// Whether a set is of matter that the liquid does not enter: both have one velocity.
+/// True if a set is of matter that the liquid does not enter: both have one velocity.
 template <class R>
 bool is_tied(const ParticleSet<R>& set) {
   return !is_projected(set) && !is_grains(set);
 }
 
-/// Where particles give to.
+/// The arrays to which particles give.
 template <class R>
 struct GivenMatter {
   std::array<LargeVector<FaceSum<R>>, 3>& sums;  ///< of faces, over the mass of a cell of liquid
@@ -30,8 +30,8 @@ struct GivenMatter {
   LargeVector<R>& cell_volume;                   ///< of cells, over a cell
 };
 
-/// What a particle is to a cell: by the density of the liquid [kg/m^3], and the part of its volume
-/// that liquid cannot take.
+/// A particle's share in a cell: its mass by the density of the liquid [kg/m^3], and the part of
+/// its volume that liquid cannot take.
 struct MatterShare {
   double density = 1, solid = 1;
 };
@@ -68,13 +68,14 @@ void give_block(const World<R>& world, const ParticleSet<R>& set, std::size_t b,
   }
 }
 
-/// By sets of a world and their particles [m/s]: what a pressure that lasts gives them in a step.
+/// The velocity that a lasting pressure gives to particles in a step, by set and particle [m/s].
 /// Explicit steps spread it over their time, where given at once it would tear them, or throw them
 /// up to fall again; and take it out at the end, so that it changes no momentum.
 template <class R>
 using Pushes = std::vector<std::vector<Vec3<R>>>;
 
-/// What lasts of a pressure, or of a drag: no more than both of two have.
+/// Returns the lasting part of a pressure, or of a drag: no more than two successive ones have in
+/// common.
 template <class R>
 R lasting(R now, R other) {
   return now * other > R(0) ? (std::abs(now) < std::abs(other) ? now : other) : R(0);
@@ -114,7 +115,7 @@ void give_changes(const World<R>& world, ParticleSet<R>& set, const CellRows& ce
                   std::vector<Vec3<R>>& pushes) {
   const R per_cell = static_cast<R>(1 / world.dx);
   for_changes(world, set, cells, gained, [&](std::size_t p, std::size_t a, const Four<R>& gain) {
-    set.own[a][p] += gain[0];
+    set.own_velocity[a][p] += gain[0];
     for (std::size_t t = 0; t < 3; ++t) set.gradient[3 * a + t][p] += gain[static_cast<int>(t) + 1] * per_cell;
   });
   pushes.assign(set.size(), Vec3<R>{});

@@ -44,7 +44,7 @@ double sum_over(const std::vector<Row>& rows, std::vector<double>& parts, const 
   return sum;
 }
 
-/// Of some rows with unknowns: what is read of the others is 0.
+/// Sizes a level for some rows with unknowns: the values of the others read as 0.
 template <class R>
 void lay(PressureLevel<R>& level, const CellRows& cells) {
   for (auto* v : {&level.diagonal, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r})
@@ -53,7 +53,7 @@ void lay(PressureLevel<R>& level, const CellRows& cells) {
   level.rows.clear();
 }
 
-/// Of all rows.
+/// Sizes a level for all rows.
 template <class R>
 void lay_whole(PressureLevel<R>& level, const CellRows& cells) {
   for (auto* v : {&level.diagonal, &level.low[0], &level.low[1], &level.low[2], &level.x, &level.b, &level.r}) {

@@ -30,7 +30,7 @@ struct PressureLevel {
   }
 };
 
-/// What is added to the matrix without being stored: symmetric, and not negative.
+/// An operator that is added to the matrix without being stored: symmetric, and not negative.
 template <class R>
 class AddedOperator {
  public:
@@ -50,16 +50,15 @@ class PressureSolver {
 
   explicit PressureSolver(const MultigridKernels<R>& kernels = projection_kernels<R>("auto").multigrid)
       : kernels_(kernels) {}
-  /// Before the matrix: arrays over `cells`, all of them 0. `cells` must stay as it is until the
-  /// next call. `longest`: cells along the longest axis of the domain.
+  /// Sizes the arrays over `cells`, all of them 0; before the matrix is filled. `cells` must stay
+  /// as it is until the next call. `longest`: cells along the longest axis of the domain.
   void begin(const CellRows& cells, int longest);
-  /// To be filled: diagonal, low, b, and rows.
+  /// Returns the matrix to be filled: diagonal, low, b, and rows.
   PressureLevel<R>& matrix() { return levels_.front(); }
-  /// After the matrix is filled: that of the coarser levels.
+  /// Sets up the coarser levels; after the matrix is filled.
   void set_up();
-  /// After the matrix is filled: finds the liquid that has no surface, such as that of a full
-  /// vessel. Its pressure is known but for a constant, and only where what flows in is what flows
-  /// out.
+  /// Finds the liquid that has no surface, such as that of a full vessel; after the matrix is
+  /// filled. Its pressure is known but for a constant, and only where inflow and outflow are equal.
   void find_pockets();
   /// Makes the right side one that has a solution.
   void balance_pockets();
@@ -77,8 +76,8 @@ class PressureSolver {
  private:
   struct Coarse {
     CellRows cells;
-    /// Of each row the rows of the finer level that it is made of: by (i * 2 + j) * 2 + half along
-    /// z.
+    /// For each row, the rows of the finer level of which it is made: by (i * 2 + j) * 2 + half
+    /// along z.
     std::vector<std::array<std::uint32_t, 8>> children;
   };
   /// Returns x . b of the level.
@@ -94,7 +93,7 @@ class PressureSolver {
   std::vector<PressureLevel<R>> levels_;
   std::vector<Coarse> coarse_;  ///< of levels_[l + 1]
   std::size_t depth_ = 0;       ///< levels in use
-  /// Of each row with unknowns of a level but the last: the place of its first cell's aggregate.
+  /// For each row with unknowns of a level but the last, the place of its first cell's aggregate.
   std::vector<std::vector<std::uint32_t>> parents_;
   std::vector<std::uint32_t> parent_of_;  ///< the same by the numbers of rows, for one level at a time
   LargeVector<R> direction_, product_;

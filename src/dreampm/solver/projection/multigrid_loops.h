@@ -47,12 +47,12 @@ DM_FN void neighbors_of(const LevelRows<R>& level, const R* x, const CellRows::R
   load_eight(az + c + 1, coupling), sum += coupling * __builtin_shufflevector(own, after, 1, 2, 3, 4, 5, 6, 7, 8);
 }
 
-/// Of eight numbers those of even places from `even`, the others from `odd`.
+/// Merges eight numbers: those of even places from `even`, the others from `odd`.
 template <class R>
 DM_FN void alternate(const Eight<R>& even, const Eight<R>& odd, Eight<R>& to) {
   to = __builtin_shufflevector(even, odd, 0, 9, 2, 11, 4, 13, 6, 15);
 }
-/// Whether the cells of a color are those of even places in a row.
+/// True if the cells of a color are those of even places in a row.
 DM_FN bool is_even(const CellRows::Row& row, int color) { return ((row.first.x + row.first.y + color) & 1) == 0; }
 
 /// Half a sweep of Gauss and Seidel of one row: its cells of a color, which see only those of the
@@ -187,7 +187,7 @@ struct MultigridLoops {
                       const std::array<std::uint32_t, 8>* children, R scale) {
     const Eight<R> odd{0, 2, 0, 2, 0, 2, 0, 2};
     for (std::size_t n = begin; n < end; ++n) {
-      // Of the lower and the upper four aggregates of the row.
+      // The lower and the upper four aggregates of the row.
       Eight<R> diagonal[2]{}, low[3][2]{};
 #pragma GCC unroll 8
       for (std::size_t part = 0; part < 8; ++part) {

@@ -18,7 +18,8 @@ constexpr double wall_gap = 1e-3;
 template <class T, class Set>
 BlockColumns<T> columns_of(Set& set, std::size_t b) {
   BlockColumns<T> columns{{}, {}, {}, set.block_start[b], set.block_start[b + 1]};
-  for (std::size_t a = 0; a < 3; ++a) columns.u[a] = set.u[a].data(), columns.own[a] = set.own[a].data();
+  for (std::size_t a = 0; a < 3; ++a)
+    columns.u[a] = set.u[a].data(), columns.own_velocity[a] = set.own_velocity[a].data();
   for (std::size_t c = 0; c < 9; ++c) columns.gradient[c] = set.gradient[c].data();
   return columns;
 }
@@ -49,7 +50,7 @@ double stop_at(const typename CutCells<R>::Collisions::Surface& surface, const P
   Mat3d slopes;
   for (int a = 0; a < 3; ++a) {
     const auto row = static_cast<std::size_t>(a);
-    v[a] = static_cast<double>(columns.own[row][p]);
+    v[a] = static_cast<double>(columns.own_velocity[row][p]);
     for (int b = 0; b < 3; ++b)
       slopes(a, b) = static_cast<double>(columns.gradient[3 * row + static_cast<std::size_t>(b)][p]);
   }
@@ -66,7 +67,7 @@ double stop_at(const typename CutCells<R>::Collisions::Surface& surface, const P
   }
   for (int a = 0; a < 3; ++a) {
     const auto row = static_cast<std::size_t>(a);
-    columns.own[row][p] = static_cast<R>(v[a]);
+    columns.own_velocity[row][p] = static_cast<R>(v[a]);
     for (int b = 0; b < 3; ++b)
       columns.gradient[3 * row + static_cast<std::size_t>(b)][p] = static_cast<R>(slopes(a, b));
   }
@@ -160,7 +161,7 @@ BlockMove take_block(const World<R>& world, ParticleSet<R>& set, std::size_t b, 
 
 template <class R>
 R speed2_of(const ParticleSet<R>& set, std::size_t p) {
-  const Vec3<R> v{set.own[0][p], set.own[1][p], set.own[2][p]};
+  const Vec3<R> v{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]};
   return dot(v, v);
 }
 
@@ -217,7 +218,7 @@ FlowSpeeds flow_speeds(const World<R>& world) {
   FlowSpeeds flow;
   double fastest2 = 0;
   for (const ParticleSet<R>& set : world.sets) {
-    // What is no number is not less than what was there.
+    // A NaN compares as not less, and is not kept.
     const auto keep = [](double& most, double other) { most = other < most ? most : other; };
     keep(fastest2,
          parallel_reduce(set.size(), 0.0, [&](double& most, std::size_t p) { keep(most, speed2_of(set, p)); }, keep));

@@ -14,13 +14,13 @@ namespace dreampm {
 template <class R>
 void particles_to_grid(const World<R>& world, const ProjectionKernels<R>& kernels, MacGrid<R>& grid);
 
-/// What the particles' way through a step was like.
+/// Statistics of the particles' motion in a step.
 struct MoveStats {
   double fastest = 0;  ///< m/s
   double usual = 0;    ///< m/s, that all but 0.1 % keep
   double kinetic = 0;  ///< J, with the affine part
   bool finite = true;
-  bool far = false;  ///< whether any went more than a block
+  bool far = false;  ///< true if any went more than a block
 };
 
 /// m/s, of all particles as they are.

@@ -12,7 +12,7 @@ namespace {
 
 using Row = CellRows::Row;
 
-/// What a field q of cells takes from the velocity of a face.
+/// Returns the change of a face's velocity by a field q of cells.
 template <class R>
 R slope_at(const MacGrid<R>& grid, const R* q, std::size_t axis, std::size_t face, std::size_t below) {
   return slope_across(q[face], q[below], grid.lightness_of(axis, face), grid.depth[face], grid.depth[below]);
@@ -21,11 +21,11 @@ R slope_at(const MacGrid<R>& grid, const R* q, std::size_t axis, std::size_t fac
 /// Less than this reaches a face of no particle, and its mean is noise.
 constexpr double least_weight = 1e-6;
 
-/// Of cells that colliders cut: how much of a kernel has to be open for its density to say how deep
-/// the cell lies, and what a density is divided by at least.
+/// For cells that colliders cut: the part of a kernel that has to be open for its density to tell
+/// the depth of the cell, and the least divisor of a density.
 constexpr double least_room = 0.5, least_room_read = 0.2;
 
-/// Of the matter in a cell: liquid that counts as all of it where there is too much.
+/// The share of liquid in the matter of a cell that counts as all of it where there is too much.
 constexpr double little_liquid = 1.0 / 16;
 
 /// The part of a velocity along axis `a` that goes along the surface of a collider whose inside a
@@ -62,7 +62,7 @@ void extend_layer(MacGrid<R>& grid, std::size_t a, bool bring_free) {
   grid.wrap(v);
 }
 
-/// How full a cell is: of its pores, where grains are.
+/// Returns the filled part of a cell: of its pores, where grains are.
 template <class R>
 R filling(const MacGrid<R>& grid, std::size_t c) {
   if (grid.grain_volume.empty()) return grid.density[c];
@@ -91,8 +91,8 @@ void for_cells_that(const MacGrid<R>& grid, const Is& is, const Body& body) {
   });
 }
 
-/// What colliders that move away leave of a cell in a step [cells^3]; negative where they come.
-/// `way`: cells for each m/s.
+/// Returns the volume of a cell that receding colliders open in a step [cells^3]; negative where
+/// they advance. `way`: cells for each m/s.
 template <class R>
 R opening(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l, R way) {
   if (grid.solid[0].empty()) return 0;
@@ -142,7 +142,7 @@ void deepen_cut_cells(MacGrid<R>& grid, R way) {
     for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces&, std::size_t) { depth[c] = next[c]; });
     grid.wrap(depth);
   }
-  // What is closed is none; else nothing but filled cells is near: a narrow gap.
+  // Closed cells are not liquid; an open one here has only filled cells near it: a narrow gap.
   for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces& at, std::size_t l) {
     next[c] = -1;
     for_open_beside(grid, at, l, [&](std::size_t) { next[c] = depth_of(filling(grid, c)); });
@@ -150,8 +150,9 @@ void deepen_cut_cells(MacGrid<R>& grid, R way) {
   for_cells_that(grid, is_unread, [&](std::size_t c, const RowPlaces&, std::size_t) { depth[c] = next[c]; });
 }
 
-/// What a cell that colliders cut holds too much or too little, over what is open of it: read over
-/// those that it is open to, too. The less is open the more of it is noise, which is left out.
+/// Returns the excess of density of a cell that colliders cut, over the open part of it; the
+/// density is read over all cells to which it is open. The smaller the open part, the more of the
+/// excess is noise, which is left out.
 template <class R>
 R cut_excess(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
   constexpr R most_noise = R(0.3), own_weight = R(2);
@@ -299,7 +300,7 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving) {
         const bool high = wall % 2 != 0;
         for (int t = 0; t < 3; ++t)
           if (t != axis && !grid.within(t, cell[t])) return;
-        // What leaves the wall goes on as it was.
+        // Liquid that leaves the wall goes on as it was.
         const R free = grid.free[a][c];
         const bool leaves = leaving.walls[static_cast<std::size_t>(wall)] < Leaving::never &&
                             !(d[high ? below : c] > R(0)) && is_known(free) && (high ? free < R(0) : free > R(0));
@@ -329,12 +330,12 @@ void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix) {
       const R excess = cut ? cut_excess(grid, at, l) : grid.density[c] - R(1);
       const bool unknown = matrix.diagonal[c] > R(0);
       matrix.b[c] = unknown && (excess > R(0) || grid.is_deep(at, l)) ? std::clamp(share * excess, -most, most) : R(0);
-      // What lies beside the liquid keeps its volume by itself, and a little liquid in it gets out.
+      // Matter beside the liquid keeps its volume by itself, and a little liquid in it gets out.
       if (!grid.solid_volume.empty() && grid.density[c] > R(0)) {
         const R liquid = 1 - grid.solid_volume[c] / grid.density[c];
         matrix.b[c] *= std::clamp(excess > R(0) ? liquid / static_cast<R>(little_liquid) : liquid, R(0), R(1));
       }
-      // Of a cut cell only the open part counts.
+      // Only the open part of a cut cell counts.
       if (cut) matrix.b[c] *= grid.room[c];
     }
   });

@@ -1,4 +1,4 @@
-// What happens on the cells and faces of a step of the projection, in the order of the step
+// The phases of a step of the projection on cells and faces, in their order
 // (docs/theory/projection.md).
 #pragma once
 #include <array>
@@ -37,8 +37,8 @@ void find_depths(MacGrid<R>& grid, double way);
 template <class R>
 void fill_matrix(MacGrid<R>& grid, PressureLevel<R>& matrix);
 
-/// By how much a pressure pulls, in the units of MacGrid::impulse, where matter leaves walls, in
-/// the order of World::walls, and colliders, in that of World::colliders.
+/// The pull of a pressure, in the units of MacGrid::impulse, at which matter leaves walls, in the
+/// order of World::walls, and colliders, in that of World::colliders.
 struct Leaving {
   static constexpr double never = std::numeric_limits<double>::infinity();
   std::array<double, 6> walls;
@@ -65,8 +65,8 @@ void apply_pressure(MacGrid<R>& grid, const Leaving& leaving);
 template <class R>
 void extend_velocities(MacGrid<R>& grid);
 
-/// As right side what cells hold too much, in part, and where liquid is all around too little
-/// (after Kugelstadt, Longva, Thuerey and Bender 2019).
+/// Fills the right side with a part of the excess of density in cells, and of its lack where liquid
+/// is all around (after Kugelstadt, Longva, Thuerey and Bender 2019).
 template <class R>
 void fill_density_source(const MacGrid<R>& grid, PressureLevel<R>& matrix);
 

@@ -31,7 +31,8 @@ double viscosity_of(const World<R>& world) {
   return liquid ? liquid->values["viscosity"] / liquid->values["density"] : 0;
 }
 
-/// Which walls and colliders matter may leave. `scale`: Pa for each of the pressure's units.
+/// Returns the walls and colliders that matter may leave. `scale`: Pa for each of the pressure's
+/// units.
 template <class R>
 Leaving what_lets_go(const World<R>& world, double scale) {
   Leaving leaving;
@@ -43,7 +44,8 @@ Leaving what_lets_go(const World<R>& world, double scale) {
   return leaving;
 }
 
-/// What a scene is refused for, edits could bring: throws InputError with what it is.
+/// Throws InputError where the world has something that scenes are refused for: edits could bring
+/// it.
 template <class R>
 void refuse_unknown(const World<R>& world) {
   const auto refuse = [](const std::string& what) {
@@ -63,7 +65,7 @@ void refuse_unknown(const World<R>& world) {
     if (c.holds) refuse(fmt::format("collider {}, which holds what is inside of it", c.name));
 }
 
-/// What the pressure of the former blocks, in order, says of the present ones; 0 of new ones.
+/// Carries the pressure of the former blocks, in order, over to the present ones; new blocks get 0.
 template <class R>
 void carry_pressure(World<R>& world, const std::vector<Vec3i>& former) {
   const std::vector<Vec3i>& blocks = world.grid.blocks.all();
@@ -95,7 +97,7 @@ void Projection<R>::begin(World<R>& world, const std::vector<std::vector<Particl
   world.dt_before = 0;
   Motion<R> motion;
   take_carried_motion(world, motion);
-  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
+  world.kept_kinetic_energy = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, {fastest, fastest}, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -123,7 +125,7 @@ void Projection<R>::form_grid(World<R>& world, Motion<R>& motion) {
   carry_pressure(world, former);
   take_carried_motion(world, motion);
   solids_.add_shown(world, 1, motion);
-  world.keeping = kinetic_of(world) + kinetic_of_solids(world, motion);
+  world.kept_kinetic_energy = kinetic_of(world) + kinetic_of_solids(world, motion);
   choose_projection_dt(world, flow, frame_end(world) - world.time);
   world.aim_colliders();
 }
@@ -255,7 +257,7 @@ typename Projection<R>::Step Projection<R>::start(World<R>& world, BodyContacts*
   s.dt = world.dt_next, s.kick = 0.5 * (world.dt_before + s.dt), s.gained = world.gravity_over(s.dt) * s.kick;
   s.density = density_of(world), s.scale = s.density * world.dx / s.kick;
   s.solids = has_solids(world), s.contacts = contacts;
-  s.kinetic = s.solids ? kinetic_of(world) : world.keeping;
+  s.kinetic = s.solids ? kinetic_of(world) : world.kept_kinetic_energy;
   // Impacts begin where all stood. Where bodies go is known after the pressure; others are at the
   // end of their way already.
   if (s.solids || !world.rigid.empty()) at_start_ = world.colliders;
@@ -332,12 +334,12 @@ void Projection<R>::count(World<R>& world, const Step& s, const FaceSums& faces,
   const double particle = liquid ? liquid->mass : 0;
   sums.grid.max_speed = moved.liquid.fastest;
   sums.grid.kinetic = faces.energy.projected * particle, sums.grid.moment = faces.moment;
-  // What solids got from the liquid is not lost.
+  // Energy that solids got from the liquid is not lost.
   sums.projected = faces.energy.lost * particle - sums.pass.energy.viscous +
-                   (world.keeping - s.kinetic - moved.solids.first - moved.solids.pushed);
+                   (world.kept_kinetic_energy - s.kinetic - moved.solids.first - moved.solids.pushed);
   sums.transfer = s.kinetic - faces.energy.given * particle + sums.grid.kinetic - moved.liquid.kinetic;
   sums.swollen = excess_volume(grid_, solver_.matrix().rows) * world.dx * world.dx * world.dx;
-  world.keeping = (sums.left_mass > 0 ? kinetic_of(world) : moved.liquid.kinetic) + moved.solids.last;
+  world.kept_kinetic_energy = (sums.left_mass > 0 ? kinetic_of(world) : moved.liquid.kinetic) + moved.solids.last;
   sums.body += {s.gained * sums.grid.mass, cross(sums.grid.moment, s.gained),
                 -dot(world.gravity_at(world.time + s.dt) - world.gravity_at(world.time), sums.grid.moment)};
   // Faces weigh by their volume in the pressure and by their particles in the transfers, and

@@ -41,14 +41,14 @@ class Projection final : public Solver<R> {
   int viscosity_iterations() const { return viscosity_iterations_; }
 
  private:
-  /// What all phases of a step know.
+  /// The state that all phases of a step share.
   struct Step {
     double dt, kick;  ///< s: of places, and of velocities
     Vec3d gained;     ///< m/s, by gravity
     double density;   ///< kg/m^3, of the liquid
     double scale;     ///< Pa for each m/s that the pressure takes from a face
     double kinetic;   ///< J, of the liquid when it begins
-    bool solids;      ///< whether other matter lies beside the liquid
+    bool solids;      ///< true if other matter lies beside the liquid
     BodyContacts* contacts;
   };
   struct Moved {
@@ -70,8 +70,8 @@ class Projection final : public Solver<R> {
   void set_up_matrix();
   /// J that it makes of motion.
   double slow_by_viscosity(World<R>& world, double kick);
-  /// That of the step before, where there is liquid still, from which the solve begins. `scale`: Pa
-  /// for each m/s.
+  /// Takes the pressure of the step before, where there is liquid still, as the first guess of the
+  /// solve. `scale`: Pa for each m/s.
   void take_last_pressure(const World<R>& world, double scale);
   void solve_pressure(const World<R>& world, const Leaving& leaving);
   void solve_density(double dx, double dt);

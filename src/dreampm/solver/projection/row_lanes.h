@@ -17,7 +17,7 @@ struct RowMask {
   friend DM_FN RowMask operator&&(const RowMask& a, const RowMask& b) { return {a.m & b.m}; }
   friend DM_FN RowMask operator||(const RowMask& a, const RowMask& b) { return {a.m | b.m}; }
   friend DM_FN RowMask operator!(const RowMask& a) { return {~a.m}; }
-  /// Whether the cell is one of [begin, end).
+  /// Returns the mask of the cells in [begin, end).
   static DM_FN RowMask within(int begin, int end) {
     const V number{0, 1, 2, 3, 4, 5, 6, 7};
     return {(number >= static_cast<Int>(begin)) & (number < static_cast<Int>(end))};

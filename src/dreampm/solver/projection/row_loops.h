@@ -1,4 +1,4 @@
-// What a step does to the faces and cells of its grid, row by row.
+// Loops of a step over the faces and cells of its grid, row by row.
 #pragma once
 #include "dreampm/physics/projection/surface.h"
 #include "dreampm/solver/projection/kernels.h"
@@ -18,19 +18,19 @@ struct RowLoops {
   static DM_FN S lightness(const Grid& grid, int a, std::size_t face) {
     return grid.lightness[a] ? S::load(grid.lightness[a] + face) : S(R(1));
   }
-  /// What a field q of cells takes from the velocity of faces.
+  /// Returns the change of faces' velocities by a field q of cells.
   static DM_FN S slope(const Grid& grid, const R* q, int a, const RowPlaces& at) {
     const std::size_t below = at.low[a];
     return slope_across(S::load(q + at.own), S::load(q + below), lightness(grid, a, at.own),
                         S::load(grid.depth + at.own), S::load(grid.depth + below));
   }
-  /// Of which faces it takes that: those at liquid that are open.
+  /// Returns the mask of the faces that pressure acts on: those at liquid that are open.
   static DM_FN Mask pressed(const Grid& grid, int a, const RowPlaces& at) {
     const Mask at_liquid = S::load(grid.depth + at.own) > zero() || S::load(grid.depth + at.low[a]) > zero();
     return at_liquid && S::load(grid.open[a] + at.own) > zero();
   }
 
-  /// What faces were given.
+  /// Returns the sums that faces were given.
   static DM_FN FaceSum<S> given(const Grid& grid, int a, std::size_t own) {
     const R* const sums = &grid.sums[a][own].momentum;
     const auto first = S::load(sums).v, second = S::load(sums + row_cells).v;

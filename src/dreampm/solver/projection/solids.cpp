@@ -21,13 +21,13 @@ constexpr int most_steps = 20000;
 /// The part of a cell's matter that liquid has to be, for solids there to be in it.
 constexpr double least_liquid = 0.25;
 
-/// Where solids are at all on a face, over the mass of a cell of liquid.
+/// The least mass of solids at a face that counts, over the mass of a cell of liquid.
 constexpr double least_solid_mass = 1e-6;
 
 /// Parts of a step, between which matter is pushed.
 constexpr int push_parts = 4;
 
-/// By ids: where each stands.
+/// Returns the place of each id in the list.
 std::vector<std::uint32_t> places_of(const std::vector<std::uint32_t>& ids) {
   std::vector<std::uint32_t> place;
   for (std::size_t p = 0; p < ids.size(); ++p) {
@@ -141,7 +141,7 @@ void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& l
           change = R(0);
           continue;
         }
-        // Where no pressure is, matter in one place has one velocity all the same.
+        // Matter in one place has one velocity, also where there is no pressure.
         const R now = grid.velocity[a][f];
         change = (is_known(now) ? now : grid.free[a][f]) - change;
         if (wet && grid.open[a][f] > R(0))
@@ -183,7 +183,7 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   // Nothing of the last run decides the next, so that restarts are exact.
   w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = 0;
   w.colliders = colliders;
-  // Those of bodies are of the middle of a step.
+  // Velocities of bodies are those in the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
   // Springs have acted on bodies.
   w.rigid = world.rigid, w.collision = world.collision;
@@ -201,7 +201,7 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
     ParticleSet<R>& set = w.sets.emplace_back(std::move(world.sets[s]));
     set.carries_motion = false;
     take_carried_motion(set, Vec3<R>{}, motion_.sets.emplace_back());
-    for (auto& column : set.own) column.clear();
+    for (auto& column : set.own_velocity) column.clear();
     for (auto& column : set.gradient) column.clear();
   }
 }
@@ -340,7 +340,8 @@ void SolidSteps<R>::remember(const World<R>& world, const Motion<R>& motion) {
     if (is_projected(set) || motion.sets[s].velocity.size() != set.size()) continue;
     for (std::size_t p = 0; p < set.size(); ++p) {
       if (set.id[p] >= shown_[s].size()) shown_[s].resize(set.id[p] + std::size_t{1});
-      shown_[s][set.id[p]] = motion.sets[s].velocity[p] - Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]};
+      shown_[s][set.id[p]] =
+          motion.sets[s].velocity[p] - Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]};
     }
   }
 }

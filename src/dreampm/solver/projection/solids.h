@@ -11,27 +11,27 @@
 
 namespace dreampm {
 
-/// Whether any matter goes by explicit steps.
+/// True if any matter goes by explicit steps.
 template <class R>
 bool has_solids(const World<R>& world) {
   return !std::all_of(world.sets.begin(), world.sets.end(), is_projected<R>);
 }
 
-/// After particles_to_grid: adds what the solids are to the density, and their momentum to the
-/// free velocities, that are there.
+/// Adds the density of the solids, and their momentum to the free velocities, that are there; after
+/// particles_to_grid.
 template <class R>
 void solids_to_grid(const World<R>& world, MacGrid<R>& grid);
 template <class R>
 void mix_velocities(const World<R>& world, MacGrid<R>& grid);
 
-/// After find_depths: solids that liquid does not touch, nor solids that it touches, are none of
-/// the pressure's: their cells become air.
+/// Turns cells of solids into air unless liquid touches them, or solids that it touches: no
+/// pressure acts in them; after find_depths.
 template <class R>
 void leave_out_dry_solids(const World<R>& world, MacGrid<R>& grid);
 
-/// After apply_pressure: the solids' particles get what the pressure and the liquid changed of
-/// their velocity and its slope, and `pushes`; `lasts`: of cells, what lasts of the pressure.
-/// `solid_free` becomes what is changed.
+/// Gives the solids' particles the change of their velocity and its slope by pressure and liquid,
+/// and `pushes`; after apply_pressure. `lasts`: of cells, the lasting part of the pressure.
+/// `solid_free` becomes the change.
 template <class R>
 void solids_from_grid(World<R>& world, MacGrid<R>& grid, const LargeVector<R>& lasts, Pushes<R>& pushes);
 
@@ -54,13 +54,14 @@ class SolidSteps {
   /// Returns their energies of motion.
   Kinetic run(World<R>& world, const std::vector<Collider>& colliders, double dt, BodyContacts* contacts,
               const Pushes<R>& pushes, StepSums& sums);
-  /// Of the last run: energies and volume ratios of its particles by their ids, and velocities as
-  /// they are: those that particles carry have their push taken out.
+  /// Adds the results of the last run: energies and volume ratios of its particles by their ids,
+  /// and velocities as they are: those that particles carry have their push taken out.
   void add_state(const World<R>& world, Motion<R>& motion);
   /// `motion` shows velocities as they are: remembers how far they are from those that particles
   /// carry.
   void remember(const World<R>& world, const Motion<R>& motion);
-  /// From those that are carried to those as they are; `sign` -1: back.
+  /// Adds the difference between velocities that particles carry and those as they are; `sign` -1:
+  /// subtracts it.
   void add_shown(const World<R>& world, R sign, Motion<R>& motion) const;
 
  private:

@@ -23,7 +23,7 @@ void add_along(ImpulseSum& to, int axis, double impulse, const Vec3d& at, double
 
 using Walls = std::array<ImpulseSum, 6>;
 
-/// What is given to walls and colliders, by their numbers.
+/// The impulses on walls and colliders, by their numbers.
 struct Contacts {
   decltype(GridStats::colliders) colliders;
   Walls walls{};
@@ -42,7 +42,7 @@ struct JoinContacts {
   }
 };
 
-/// What viscosity did on walls, and on faces of colliders that hold the liquid.
+/// Adds the impulses of viscosity on walls, and on faces of colliders that hold the liquid.
 template <class R>
 void add_viscous_contact(const World<R>& world, const MacGrid<R>& grid, const Viscosity<R>& viscosity,
                          const StepScale& scale, GridStats& to) {
@@ -233,7 +233,9 @@ double kinetic_of(const World<R>& world) {
       Mat3d c;
       for (std::size_t n = 0; n < 9; ++n)
         c(static_cast<int>(n / 3), static_cast<int>(n % 3)) = static_cast<double>(set.gradient[n][p]);
-      to += kinetic_energy(set, world.dx, static_cast<Vec3d>(Vec3<R>{set.own[0][p], set.own[1][p], set.own[2][p]}), c);
+      to += kinetic_energy(
+          set, world.dx,
+          static_cast<Vec3d>(Vec3<R>{set.own_velocity[0][p], set.own_velocity[1][p], set.own_velocity[2][p]}), c);
     });
   }
   return sum;

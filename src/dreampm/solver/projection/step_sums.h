@@ -1,4 +1,4 @@
-// What a step of the projection did to momentum, energy and volume: read off its grid, for reports
+// The sums of a step of the projection: momentum, energy and volume, read off its grid, for reports
 // alone.
 #pragma once
 #include "dreampm/backend/backend.h"
@@ -8,17 +8,17 @@
 
 namespace dreampm {
 
-/// What a step's grid knows of its liquid.
+/// Constants that turn the values of a step's grid into sums.
 struct StepScale {
   double particle = 0;  ///< kg, of one of liquid
   double cell = 0;      ///< kg, of a cell of liquid
   Vec3d kick;           ///< m/s, what gravity gave
 };
 
-/// After velocities are extended: what walls and colliders gave to the liquid. Of walls it is what
-/// their faces stop, and the pressure of the cells beside them; of colliders the pressure over the
-/// parts of faces that they close, as it is at their surface. What a collider hides of a wall is
-/// the collider's. Of both also what viscosity did.
+/// Adds the impulses of walls and colliders on the liquid; after velocities are extended. Walls
+/// give what their faces stop, and the pressure of the cells beside them; colliders give the
+/// pressure over the parts of faces that they close, as it is at their surface. The part of a wall
+/// that a collider hides is the collider's. Both include viscosity.
 template <class R>
 void add_contact(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut, const Viscosity<R>& viscosity,
                  const StepScale& scale, GridStats& to);
@@ -27,7 +27,7 @@ struct FaceSums {
   EnergySums energy;
   Vec3d moment{};  ///< of all matter: mass times place [kg m]
 };
-/// After velocities are extended.
+/// Returns the sums over faces; after velocities are extended.
 template <class R>
 FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& scale);
 
@@ -36,8 +36,9 @@ FaceSums face_sums(const World<R>& world, MacGrid<R>& grid, const StepScale& sca
 template <class R>
 double excess_volume(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 
-/// Of the volume of liquid the part by which cells hold more than half too much: where thin sheets
-/// come to lie in others, faster than the density takes them apart. `rows`: those with liquid.
+/// Returns the volume fraction of the liquid by which cells are more than half too full: where thin
+/// sheets come to lie in others, faster than the density takes them apart. `rows`: those with
+/// liquid.
 template <class R>
 double crowding(const MacGrid<R>& grid, std::span<const CellRows::Row> rows);
 

@@ -30,7 +30,7 @@ void SurfaceStress<R>::begin(const World<R>& world, const MacGrid<R>& grid, cons
     });
   });
   grid.wrap(cell_);
-  // What others fill is left to those.
+  // Cells that others fill are left to those.
   for_all_rows(grid.cells.rows(), [&](const CellRows::Row&, const RowPlaces& at) {
     for (std::size_t a = 0; a < 3; ++a) {
       const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;

@@ -11,13 +11,14 @@
 
 namespace dreampm {
 
-/// What flows out of a cell that a collider cuts,
+/// The stress across surfaces that cut cells. The pressure brings the flow out of such a cell,
 ///   D = sum of A u + (1 - A) u_s  over its faces, outward,
-/// is what the pressure brings to 0. kappa D^2/2 is added to what the velocities minimise: kappa D
-/// is the liquid's stress across the surface, and no steady flow is changed. So it is where liquid
-/// slips along a collider, and on rigid bodies, else what pressure and viscosity do to a light one
-/// in turn shakes it. Where it slips, stresses count by what lies outside, and faces behind the
-/// surface go on as the flow does before it, without divergence: beta (sum of d_a u_a)^2/2.
+/// to 0. kappa D^2/2 is added to the functional that velocities minimize: kappa D is the liquid's
+/// stress across the surface, and no steady flow is changed. The term acts where liquid slips along
+/// a collider, and on rigid bodies: without it the alternation of pressure and viscosity shakes a
+/// light body. Where liquid slips, stresses count by the part of a cell that lies outside, and
+/// velocities of faces behind the surface continue the flow before it, without divergence:
+/// beta (sum of d_a u_a)^2/2.
 template <class R>
 class SurfaceStress {
  public:
@@ -26,9 +27,9 @@ class SurfaceStress {
 
   /// Finds what colliders along which it slips leave of cells, faces and edges.
   void begin(const World<R>& world, const MacGrid<R>& grid, const CutCells<R>& cut);
-  /// Whether there are such colliders or rigid bodies; else the rest must not be asked for.
+  /// True if there are such colliders or rigid bodies; else the rest must not be asked for.
   bool any() const { return !cell_.empty(); }
-  /// What they leave of a cell, and of cubes of its size around a face and an edge.
+  /// The open parts of a cell, and of cubes of its size around a face and an edge.
   R in_cell(std::size_t c) const { return cell_[c]; }
   R at_face(std::size_t a, std::size_t f) const { return face_[a][f]; }
   R at_edge(std::size_t axis, std::size_t e) const { return edge_[axis][e]; }
@@ -44,7 +45,7 @@ class SurfaceStress {
   void find_stiffness(const World<R>& world, const MacGrid<R>& grid, R diffusion, const Counts& counts);
   /// kappa of a cell; 0 where no such surface is.
   R kappa(std::size_t c) const { return kappa_[c]; }
-  /// What a face resists by these stresses alone.
+  /// Returns the resistance of a face by these stresses alone.
   R stiffness(const MacGrid<R>& grid, std::size_t a, const RowPlaces& at, std::size_t l) const {
     const std::size_t f = at.own + l, below = at.low[a] + l;
     const R open = grid.open[a][f];
@@ -63,24 +64,26 @@ class SurfaceStress {
   const Field& pull() const { return pull_; }
 
  private:
-  /// By the last pressure, of a cell or, where it is new, of those beside it.
+  /// True if the last pressure, of a cell or, where the cell is new, of those beside it, was
+  /// positive.
   static bool was_pressed(const MacGrid<R>& grid, const RowPlaces& at, std::size_t l) {
     R pressure = grid.impulse[at.own + l];
     if (pressure == R(0))
       for (std::size_t a = 0; a < 3; ++a) pressure += grid.impulse[at.low[a] + l] + grid.impulse[at.high[a] + l];
     return pressure > R(0);
   }
-  /// Where s is large, kappa and beta over the stiffness of a cell, 2 s: so much that a surface
-  /// gives way by little, and not so much that the solve gets hard.
+  /// The stiffness kappa and beta over that of a cell, 2 s, where s is large: so high that a
+  /// surface gives way by little, and not so high that the solve gets hard.
   static constexpr double stiffness_over_cells = 20;
-  /// Of a surface in a cell [dx^2]: less in a gap that is narrower than a cell.
+  /// The least area of a surface in a cell [dx^2]: it is less in a gap that is narrower than a
+  /// cell.
   static constexpr double least_area = 0.3;
 
   std::vector<bool> stiff_;  ///< of World::colliders
   Field cell_;
   Faces face_, edge_;
   Field kappa_, beta_, pull_, swell_;
-  /// Of the grid's rows, those with such cells, and those with faces of such.
+  /// The rows of the grid with such cells, and those with faces of such.
   std::vector<std::uint32_t> cut_rows_, rows_beside_;
 };
 
@@ -106,7 +109,7 @@ void SurfaceStress<R>::find_stiffness(const World<R>& world, const MacGrid<R>& g
           if (owner == grid.no_owner || !stiff_[owner]) continue;
           const R part = 1 - grid.open[a][f];
           cut = true, slips = slips || !grid.holding.colliders[owner], across += f == c ? part : -part;
-          // What may leave a surface stays only where it was pressed to it.
+          // Liquid that may leave a surface stays only where it was pressed to it.
           if (world.colliders[owner].contact() == WallType::separate) whole = whole && was_pressed(grid, at, l);
         }
         area2 += across * across;

@@ -1,4 +1,4 @@
-// What the particles of a block take from the staggered grid, and where they go, over any lane
+// Loops in which the particles of a block take from the staggered grid and move, over any lane
 // type. The cells around the block are copied to where they lie close together.
 #pragma once
 #include "dreampm/solver/projection/kernels.h"
@@ -50,8 +50,8 @@ DM_FN void samples_around(const R* field, const std::int32_t (&number)[lanes], S
       Row::pairs(field + i * Near::along_x + j * Near::along_y, number, samples.at[i][j][0], samples.at[i][j][1]);
 }
 
-/// Of the particles that `unknown` names the values that look(place, values) finds, one after the
-/// other. `x`: their places in cells from the first of the window.
+/// Replaces the values of the particles in `unknown` by those that look(place, values) finds, one
+/// after the other. `x`: their places in cells from the first of the window.
 template <class S, class Row, int count, class Look>
 DM_FN void look_up(const Vec3<S>& x, unsigned unknown, S* const (&values)[count], const Look& look) {
   using R = Scalar<S>;
@@ -108,7 +108,7 @@ struct TakenSums {
   bool far = false;
 };
 
-/// What particles carry: along each axis the velocity [m/s], and its slopes [1/s].
+/// The motion that particles carry: along each axis the velocity [m/s], and its slopes [1/s].
 template <class S>
 struct Taken {
   S v[3];
@@ -160,7 +160,7 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
     // It keeps its own motion, and falls.
     for (int a = 0; a < 3; ++a) {
       const auto axis = static_cast<std::size_t>(a);
-      taken.v[a] = select(known, taken.v[a], Row::load(to.own[axis] + p, n) + S(block.kick[a]));
+      taken.v[a] = select(known, taken.v[a], Row::load(to.own_velocity[axis] + p, n) + S(block.kick[a]));
       for (int t = 0; t < 3; ++t)
         taken.slope[a][t] =
             select(known, taken.slope[a][t], Row::load(to.gradient[3 * axis + static_cast<std::size_t>(t)] + p, n));
@@ -170,7 +170,7 @@ DM_FN void take_some(const BlockTaking<Scalar<S>>& block, const Scalar<S>* still
   S slope2(R(0));
 #pragma GCC unroll 3
   for (int a = 0; a < 3; ++a) {
-    Row::store(taken.v[a], to.own[a] + p, n);
+    Row::store(taken.v[a], to.own_velocity[a] + p, n);
 #pragma GCC unroll 3
     for (int t = 0; t < 3; ++t) {
       const S slope = taken.slope[a][t];

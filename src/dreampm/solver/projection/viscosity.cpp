@@ -13,10 +13,11 @@ using Row = CellRows::Row;
 /// Less than this part of a cell a face does not hold: it would take on any speed.
 constexpr double least_face_mass = 0.01;
 
-/// What two faces on either side of a collider's surface are apart outside of it, at least [cells].
+/// The least distance outside of a collider between two faces on either side of its surface
+/// [cells].
 constexpr double least_way = 0.1;
 
-/// Of the first residual, and how often at most.
+/// The tolerance, over the first residual, and the most iterations.
 constexpr double viscous_tolerance = 1e-4;
 constexpr int most_viscous_iterations = 400;
 
@@ -100,7 +101,7 @@ void Viscosity<R>::weigh(const World<R>& world, MacGrid<R>& grid, double diffusi
         const bool closed = !(grid.open[a][f] > R(0)), inner = closed && goes_on(row, a, at, l);
         if ((closed && !inner) || grid.is_in_holder(a, f)) {
           velocity_[a][f] = grid.solid[a].empty() ? R(0) : grid.solid[a][f];
-          // What flows through its open part sticks.
+          // Liquid that flows through its open part sticks.
           if (!closed) grid.free[a][f] = velocity_[a][f];
         } else if (is_known(grid.free[a][f]) || inner) {
           R mass = (liquid_[f] + liquid_[below]) / 2;
@@ -245,7 +246,7 @@ ViscousSolve Viscosity<R>::solve(World<R>& world, MacGrid<R>& grid, const CutCel
           if (mass_[a][c] > R(0)) body(a, c);
     });
   };
-  // Of faces, and of bodies.
+  // The inner product over faces and bodies.
   const auto product = [&](const Faces& x, const Faces& y, const std::vector<Six>& bx, const std::vector<Six>& by) {
     double sum = sum_over_cells(rows, parts_, [&](std::size_t c) {
       double at = 0;

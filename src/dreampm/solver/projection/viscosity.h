@@ -8,7 +8,7 @@
 
 namespace dreampm {
 
-/// What a solve took.
+/// The iterations and the residual of a solve.
 struct ViscousSolve {
   int iterations = 0;
   double residual = 0;  ///< over the first one
@@ -30,9 +30,9 @@ class Viscosity {
   ViscousSolve solve(World<R>& world, MacGrid<R>& grid, const CutCells<R>& cut, const BodyPressure<R>& bodies,
                      double diffusion, double density);
 
-  /// Of a step without viscosity.
+  /// Leaves viscosity out of this step.
   void leave_out() { acts_ = false; }
-  /// Whether the last step had viscosity. What it did, over the mass of a cell of liquid [m/s]:
+  /// True if the last step had viscosity. The results, over the mass of a cell of liquid [m/s]:
   bool acts() const { return acts_; }
   /// what the liquid gives to a face whose velocity is given; 0 of others,
   R given_to(std::size_t axis, std::size_t face) const {
@@ -46,7 +46,7 @@ class Viscosity {
  private:
   using Faces = std::array<LargeVector<R>, 3>;
   void weigh(const World<R>& world, MacGrid<R>& grid, double diffusion);
-  /// Of its stresses, by which a face resists alone.
+  /// Returns the resistance of a face by viscous stresses alone.
   R stiffness(const MacGrid<R>& grid, std::size_t axis, const RowPlaces& at, std::size_t lane) const;
   /// f = -gradient of the sums of stresses at u and, of bodies, at what they are faster;
   /// `moving` as in SurfaceStress. `on_bodies`: what they get.

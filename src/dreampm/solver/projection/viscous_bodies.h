@@ -20,22 +20,22 @@ class ViscousBodies {
   /// [kg/m^3]. `stiffness(axis, face)`: of its stresses; 0 where there are none.
   template <class Stiffness>
   void begin(const World<R>& world, const MacGrid<R>& grid, double density, const Stiffness& stiffness);
-  /// And the cells along whose surfaces liquid slips; ends what `begin` began.
+  /// Adds the cells along whose surfaces liquid slips; ends the work that `begin` began.
   void add_cells(const BodyPressure<R>& pressed, const SurfaceStress<R>& surfaces);
 
   // Vectors of the solve, one Six a body.
 
-  /// From the forces on faces and the stresses of cells, those on bodies: J f.
+  /// Sums the forces on faces and the stresses of cells to those on bodies: J f.
   void gather(const Faces& f, const SurfaceStress<R>& surfaces, std::vector<Six>& bodies) const;
   /// Velocities of faces from those of bodies, and the faces that have them: J^T V.
   void scatter(const std::vector<Six>& bodies, Faces& u) const;
   /// The same, added to what is there; and in `free` of open faces what they are then.
   void scatter_more(const std::vector<Six>& bodies, Faces& u, MacGrid<R>& grid) const;
-  /// What flows out of cells as bodies move.
+  /// Adds the flow out of cells that the motion of bodies causes.
   void add_flow(const std::vector<Six>& bodies, SurfaceStress<R>& surfaces) const;
   /// M V, M over the mass of a cell of liquid; 0 in locked components.
   void weigh(const std::vector<Six>& velocities, std::vector<Six>& out) const;
-  /// By the inverse of M and of the stiffness of their faces.
+  /// Multiplies by the inverse of M and of the stiffness of their faces.
   void precondition(const std::vector<Six>& residual, std::vector<Six>& out) const;
   std::size_t size() const { return bodies_.size(); }
   /// Adds to the twists of the bodies.

@@ -31,8 +31,8 @@ void for_images(const MacGrid<R>& grid, int axis, const Body& body) {
   });
 }
 
-/// What of faces behind walls is along them becomes that of the faces before, or its opposite where
-/// `turned` says so of the wall, so that it is 0 on it; axis by axis, so that edges and corners
+/// Mirrors velocities of faces along walls to the faces behind them, with the opposite sign where
+/// `turned` says so of the wall, so that they are 0 on it; axis by axis, so that edges and corners
 /// follow. Particles at a wall read behind it.
 template <class R>
 void mirror_along_walls(const MacGrid<R>& grid, std::array<LargeVector<R>, 3>& faces,

@@ -6,12 +6,12 @@
 
 namespace dreampm::validate {
 
-struct Crushed {
+struct ImpactBounds {
   double sound_speed = 0;  ///< m/s, the largest on the way
   double viscosity = 0;    ///< m^2/s, what bounds the step
 };
 
-/// What loads a material.
+/// The load on a material.
 struct Load {
   double energy = 0;  ///< J/m^3 of rest volume that it can take up
   double time = 0;    ///< s of a doubling or halving, for what hangs on rates
@@ -23,6 +23,6 @@ struct Load {
 /// Each goes on until `energy` of work is done or it is pressed or swollen twentyfold, once in fine
 /// steps and once in coarse ones, which may turn a particle inside out. `values`: complete. Throws
 /// std::out_of_range for an unknown material.
-Crushed crush(std::string_view material, const Values& values, const Load& load);
+ImpactBounds impact(std::string_view material, const Values& values, const Load& load);
 
 }  // namespace dreampm::validate

@@ -1,5 +1,5 @@
 // Scenes by chance, and how hard their materials can be pressed.
-#include "validate/draw.h"
+#include "validate/random_scene.h"
 
 #include <gtest/gtest.h>
 
@@ -10,17 +10,17 @@
 #include "dreampm/physics/materials.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/parse.h"
-#include "validate/crush.h"
+#include "validate/impact.h"
 
 namespace dreampm::validate {
 namespace {
 
-TEST(Draw, IsTheSameAloneAndReadsBack) {
-  const Draw a = draw_scene(7, 3), again = draw_scene(7, 3);
+TEST(RandomScene, IsTheSameAloneAndReadsBack) {
+  const RandomScene a = random_scene(7, 3), again = random_scene(7, 3);
   EXPECT_EQ(a.text, again.text);
   EXPECT_EQ(a.dt_floor, again.dt_floor);
-  EXPECT_NE(a.text, draw_scene(7, 4).text);
-  EXPECT_NE(a.text, draw_scene(8, 3).text);
+  EXPECT_NE(a.text, random_scene(7, 4).text);
+  EXPECT_NE(a.text, random_scene(8, 3).text);
   const auto back = scene::parse_scene_text(a.text, "draw.yaml");
   ASSERT_TRUE(back.ok()) << back.text();
   EXPECT_EQ(scene::scene_hash(back.scene, scene::Part::simulation),
@@ -28,8 +28,8 @@ TEST(Draw, IsTheSameAloneAndReadsBack) {
 }
 
 /// Beyond what scenes may ask for, and nothing else of the draw changes.
-TEST(Draw, TakesACflFromOutside) {
-  const Draw drawn = draw_scene(7, 3), wild = draw_scene(7, 3, 0.9);
+TEST(RandomScene, TakesACflFromOutside) {
+  const RandomScene drawn = random_scene(7, 3), wild = random_scene(7, 3, 0.9);
   EXPECT_EQ(wild.scene.time.cfl, 0.9);
   EXPECT_TRUE(scene::parse_scene_text(wild.text, "draw.yaml").ok());
   EXPECT_EQ(wild.scene.space, drawn.scene.space);
@@ -37,9 +37,9 @@ TEST(Draw, TakesACflFromOutside) {
   EXPECT_GT(wild.dt_floor, drawn.dt_floor) << "the floor is that of its cfl";
 }
 
-/// Of all that is slower, softer and less viscous, with and without contacts; and some of it comes
-/// close.
-TEST(Draw, NoStepIsShorterThanTheShortest) {
+/// The bound holds for all that is slower, softer and less viscous, with and without contacts; and
+/// some of it comes close.
+TEST(RandomScene, NoStepIsShorterThanTheShortest) {
   constexpr double dx = 0.01, cfl = 0.5;
   for (const int contacts : {0, 1, 2})
     for (const double most_viscous : {1e-4, 1e-2, 3e-2, 0.1, 1.0, 10.0, 1e3}) {
@@ -57,13 +57,13 @@ TEST(Draw, NoStepIsShorterThanTheShortest) {
     }
 }
 
-TEST(Draw, TakesEveryMaterialAndKeepsToItsWord) {
+TEST(RandomScene, TakesEveryMaterialAndKeepsToItsWord) {
   std::set<std::string> materials;
   std::set<std::string> transfers;
   bool open = false, skin = false;
   double lowest = 1, highest = 0;
   for (int i = 0; i < 60; ++i) {
-    const Draw d = draw_scene(1, i);
+    const RandomScene d = random_scene(1, i);
     const double first = d.scene.materials[0].values["density"], second = d.scene.materials[1].values["density"];
     EXPECT_LE(std::max(first / second, second / first), 10 * (1 + 1e-4)) << d.text;
     for (const auto& m : d.scene.materials) materials.insert(m.type), transfers.insert(m.transfer);
@@ -94,12 +94,12 @@ TEST(Crush, PressesAsFarAsTheEnergyGoes) {
   v.with_defaults(Newtonian::info.params);
   const auto law = Newtonian::Law<double>::from(v);
   for (const double energy : {1e3, 1e5, 1e6}) {
-    const Crushed worst = crush("newtonian", v, {energy, 1e-3, 2e-3});
+    const ImpactBounds worst = impact("newtonian", v, {energy, 1e-3, 2e-3});
     Newtonian::State<double> s{0};
     while (law.respond(s).energy < energy && s.e > -0.6) s.e -= 1e-5;
     EXPECT_NEAR(worst.sound_speed / law.respond(s).sound_speed, 1, 0.02) << energy;
   }
-  EXPECT_THROW(crush("ether", v, {1, 1, 1}), std::out_of_range);
+  EXPECT_THROW(impact("ether", v, {1, 1, 1}), std::out_of_range);
 }
 
 /// Snow that is packed hardens: the energy of a fall of a meter makes it faster than at rest, more
@@ -108,8 +108,8 @@ TEST(Crush, PackedSnowIsFaster) {
   Values v;
   v.with_defaults(Snow::info.params);
   const double rest = facts_of(Snow::info, v).sound_speed;
-  const double some = crush("snow", v, {400 * 9.81, 1e-2, 2e-3}).sound_speed;
-  const double more = crush("snow", v, {16 * 400 * 9.81, 1e-2, 2e-3}).sound_speed;
+  const double some = impact("snow", v, {400 * 9.81, 1e-2, 2e-3}).sound_speed;
+  const double more = impact("snow", v, {16 * 400 * 9.81, 1e-2, 2e-3}).sound_speed;
   EXPECT_GT(some, 1.05 * rest);
   EXPECT_GT(more, some);
 }
@@ -119,8 +119,8 @@ TEST(Crush, CoarseStepsPackSnowAtOnce) {
   Values v;
   v.with_defaults(Snow::info.params);
   const double rest = facts_of(Snow::info, v).sound_speed, hardest = rest * std::exp(v["hardening"] * 0.4 / 2);
-  EXPECT_LT(crush("snow", v, {1, 1e-2, 2e-3}).sound_speed, 0.5 * hardest);
-  EXPECT_NEAR(crush("snow", v, {1, 1e-2, 1.4}).sound_speed / hardest, 1, 0.05);
+  EXPECT_LT(impact("snow", v, {1, 1e-2, 2e-3}).sound_speed, 0.5 * hardest);
+  EXPECT_NEAR(impact("snow", v, {1, 1e-2, 1.4}).sound_speed / hardest, 1, 0.05);
 }
 
 /// One load may come after another: snow that is packed and then pulled has been both.
@@ -131,7 +131,7 @@ TEST(Crush, LoadsFollowEachOther) {
   v.with_defaults(Seed::info.params);
   const double e = v["youngs_modulus"], rho = v["density"];
   const double packed = std::sqrt(e * std::exp(Seed::most_hardened) / rho);
-  EXPECT_GT(crush("seed", v, {1e9, 1e-2, 2e-3}).sound_speed, 1.5 * packed);
+  EXPECT_GT(impact("seed", v, {1e9, 1e-2, 2e-3}).sound_speed, 1.5 * packed);
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 namespace dreampm::validate {
 
 /// A scene by chance, and what its run is held to.
-struct Draw {
+struct RandomScene {
   std::string text;  ///< the scene, for `dreampm run`
   model::Scene scene;
   double fall = 0;  ///< m/s, of matter that fell from the draw's height, at most 1 m, and through its room or out of it
@@ -24,15 +24,15 @@ struct Draw {
 /// then than wave_bound over what those cost.
 double shortest_dt(double cfl, double dx, const SignalSpeeds& most);
 
-inline constexpr int draw_steps = 400;  ///< steps of a draw: sound crosses its room several times
+inline constexpr int random_scene_steps = 400;  ///< steps of a draw: sound crosses its room several times
 
-/// Draw `index` of `seed` of the report's program: one of its two presets, its sliders anywhere in
-/// their ranges (v, lower, upper, elastic, h, gravity along each axis), on its grid of 32 or, one
-/// in eight, of 64. Bodies begin at rest; `fall` is the speed of matter that fell through the whole
-/// box.
-Draw draw_report(std::uint64_t seed, int index);
+/// RandomScene `index` of `seed` of the report's program: one of its two presets, its sliders
+/// anywhere in their ranges (v, lower, upper, elastic, h, gravity along each axis), on its grid of
+/// 32 or, one in eight, of 64. Bodies begin at rest; `fall` is the speed of matter that fell
+/// through the whole box.
+RandomScene random_report_scene(std::uint64_t seed, int index);
 
-/// Draw `index` of `seed`: materials of the list with every parameter anywhere in its range
+/// RandomScene `index` of `seed`: materials of the list with every parameter anywhere in its range
 /// (log-uniform where a slider moves in decades), densities of 1:10 at most, any cfl that the
 /// parser takes, spacings of 1 mm to 0.1 m, 1 to 64 particles a cell, any transfer, any walls, one
 /// in ten open, a collider in four of ten. Matter that is stiff takes steps too short to fall a
@@ -42,10 +42,10 @@ Draw draw_report(std::uint64_t seed, int index);
 /// surface moves twice as fast as the wave that arrives at it; a small piece before a large one
 /// leaves a wall at three times, so that four times count at least. Wave speed and viscosity are
 /// those of materials that took up the energy of that speed, one load after another, also in steps
-/// as coarse as it makes them (crush.h). Energy out of nothing, stiffness beyond what that energy
+/// as coarse as it makes them (impact.h). Energy out of nothing, stiffness beyond what that energy
 /// can make, and a step that shrinks on by itself all end below it. `cfl`: instead of the drawn
 /// one, if not 0. What the parser would not take stands in `scene` alone; `text` has the largest
 /// that it takes.
-Draw draw_scene(std::uint64_t seed, int index, double cfl = 0);
+RandomScene random_scene(std::uint64_t seed, int index, double cfl = 0);
 
 }  // namespace dreampm::validate

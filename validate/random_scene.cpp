@@ -1,4 +1,4 @@
-#include "validate/draw.h"
+#include "validate/random_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "dreampm/physics/transfers.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/setup/assemble.h"
-#include "validate/crush.h"
+#include "validate/impact.h"
 
 namespace dreampm::validate {
 namespace {
@@ -81,7 +81,7 @@ std::string material_text(Dice& dice, const MaterialInfo& info, double density) 
 
 std::string wall_text(Dice& dice) {
   const std::string skin = dice.chance(0.3) ? ", skin_friction: true" : "";
-  // Of ten walls one is open.
+  // One wall of ten is open.
   const int which = dice.below(10);
   if (which < 3) return "{type: slip" + skin + "}";
   if (which < 6) return "{type: stick}";
@@ -156,9 +156,9 @@ Outline outline(Dice& dice, std::uint64_t seed, int index) {
                        material, shape, shown(sideways * o.fall),
                        shown(falls ? -o.fall * std::sqrt(1 - sideways * sideways) : 0), patterns[dice.below(3)]);
   };
-  o.head =
-      fmt::format("dreampm: 1\nname: draw-{0}-{1}\nabout: Draw {1} of seed {0} of the case stability.\nseed: {2}\n",
-                  seed, index, dice.whole());
+  o.head = fmt::format(
+      "dreampm: 1\nname: draw-{0}-{1}\nabout: RandomScene {1} of seed {0} of the case stability.\nseed: {2}\n", seed,
+      index, dice.whole());
   // One by one: in a call's arguments the order of throws would be the compiler's.
   const std::string sides = wall_text(dice), floor = wall_text(dice), ceiling = wall_text(dice);
   o.head += fmt::format(
@@ -197,7 +197,7 @@ double shortest_dt(double cfl, double dx, const SignalSpeeds& most) {
   return std::min(stable_dt(cfl, dx, most, 1e30).dt, std::max(limit, free / (1 + stage_cost * stages)));
 }
 
-Draw draw_report(std::uint64_t seed, int index) {
+RandomScene random_report_scene(std::uint64_t seed, int index) {
   Dice dice(mix64(seed ^ 0x7265706f7274) + static_cast<std::uint64_t>(index));
   const int cells = index % 8 == 7 ? 64 : 32;
   const bool two = dice.chance(0.5);
@@ -208,9 +208,10 @@ Draw draw_report(std::uint64_t seed, int index) {
   const double v = dice.between(0, 0.7), low = dice.between(-400, -100), high = dice.between(0, 100),
                h = dice.between(0.25, hardest);
   const bool elastic = dice.chance(0.3);
-  Draw draw;
+  RandomScene draw;
   draw.text = fmt::format(
-      "dreampm: 1\nname: report-draw-{0}-{1}\nabout: Draw {1} of seed {0} of the case stability-playground.\nseed: "
+      "dreampm: 1\nname: report-draw-{0}-{1}\nabout: RandomScene {1} of seed {0} of the case "
+      "stability-playground.\nseed: "
       "{2}\nspace: {{min: [0, 0, 0], max: [1, 1, 1], spacing: {3:.17g}, particles_per_cell: {4}}}\n",
       seed, index, dice.whole(), spacing, shown(particles / (volume * cells * cells * cells)));
   draw.text += fmt::format("gravity: [{}, {}, {}]\nmaterials:\n", shown(gx), shown(gy), shown(gz));
@@ -238,7 +239,7 @@ Draw draw_report(std::uint64_t seed, int index) {
   return draw;
 }
 
-Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
+RandomScene random_scene(std::uint64_t seed, int index, double asked_cfl) {
   Dice dice(mix64(seed) + static_cast<std::uint64_t>(index));
   const Outline o = outline(dice, seed, index);
   const std::string name = fmt::format("draw {} of seed {}", index, seed);
@@ -270,21 +271,21 @@ Draw draw_scene(std::uint64_t seed, int index, double asked_cfl) {
         step, stable_dt(limit, dx, {fall * world.reach(), facts.sound_speed, 0, facts.kinematic_viscosity}, 1).dt);
     // The gradient of a step's velocities is at most 2 v/dx (math/bspline.h: 4 sum w |x| = 2 where
     // it is largest).
-    const Crushed worst = crush(set.material, set.values,
-                                {.energy = set.values["density"] * flung * flung / 2,
-                                 .time = dx / (fall + facts.sound_speed),
-                                 .coarse = 2 * limit * flung / (flung + facts.sound_speed)});
+    const ImpactBounds worst = impact(set.material, set.values,
+                                      {.energy = set.values["density"] * flung * flung / 2,
+                                       .time = dx / (fall + facts.sound_speed),
+                                       .coarse = 2 * limit * flung / (flung + facts.sound_speed)});
     most.wave = std::max(most.wave, worst.sound_speed);
     most.shock = std::max(most.shock, shock_wave_speed(set.material, set.values, flung * world.reach()));
     most.viscosity = std::max(most.viscosity, worst.viscosity);
   }
   most.speed = (flung + most.wave) * world.reach();
-  Draw draw;
+  RandomScene draw;
   draw.fall = fall;
-  // What is left of a frame is split evenly, so that a step can be half of its bound.
+  // The rest of a frame is split evenly, so that a step can be half of its bound.
   draw.dt_floor = shortest_dt(limit, dx, most) / 2;
   const double fps = std::clamp(1 / (25 * step), 1.0, 10000.0);
-  const int frames = 2 + static_cast<int>(draw_steps * step * fps);
+  const int frames = 2 + static_cast<int>(random_scene_steps * step * fps);
   draw.text = o.with(fps, frames, cfl);
   draw.scene = parsed(draw.text, name);
   draw.scene.time.cfl = limit;

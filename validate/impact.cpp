@@ -1,4 +1,4 @@
-#include "validate/crush.h"
+#include "validate/impact.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@ constexpr double fine = 2e-3, most = 20;
 template <class M>
 class Drive {
  public:
-  Drive(const Values& values, const Load& load, double strain, Crushed& worst)
+  Drive(const Values& values, const Load& load, double strain, ImpactBounds& worst)
       : law_(M::template Law<double>::from(values)), load_(load), strain_(strain), worst_(worst) {
     for (int c = 0; c < state_columns<M>; ++c) s_[c] = M::template State<double>::rest[c];
   }
@@ -29,7 +29,7 @@ class Drive {
     while (work < load_.energy && ratio > 1 / most && ratio < most) {
       at.volume = volume_;
       const StressResponse<double> r = advanced(law_, s_, at);
-      // What no longer gives numbers is outside of what a run can reach.
+      // States that no longer give finite numbers are outside of the reach of a run.
       if (!std::isfinite(r.energy) || !std::isfinite(r.sound_speed)) return;
       worst_.sound_speed = std::max(worst_.sound_speed, r.sound_speed);
       worst_.viscosity = std::max(worst_.viscosity, r.kinematic_viscosity);
@@ -45,15 +45,15 @@ class Drive {
   typename M::template State<double> s_;
   Load load_;
   double strain_, volume_ = 1;
-  Crushed& worst_;
+  ImpactBounds& worst_;
 };
 
 }  // namespace
 
-Crushed crush(std::string_view material, const Values& values, const Load& load) {
+ImpactBounds impact(std::string_view material, const Values& values, const Load& load) {
   const Mat3d press = Mat3d::diagonal(-1, -1, -1), flatten = Mat3d::diagonal(0, -1, 0);
   const Mat3d swell = Mat3d::diagonal(1, 1, 1), pull = Mat3d::diagonal(0, 1, 0);
-  Crushed worst;
+  ImpactBounds worst;
   const bool known = Materials::with(material, [&]<class M>() {
     for (const double strain : {fine, load.coarse})
       for (const Mat3d& first : {press, flatten, pull})
