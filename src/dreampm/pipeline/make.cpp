@@ -110,7 +110,7 @@ void check_same_scene(const model::Scene& scene, const SceneSource& source, cons
   if (!fs::exists(file) || !fs::exists(folder / "run.json"))
     fail_input("{}: nothing is simulated there; dreampm make {} --only simulate --out {} does it", folder.string(),
                source.path, folder.string());
-  std::vector<std::string> changes = changed_keys(read_file(file), scene::emit_scene(with_kept_models(scene)));
+  std::vector<std::string> changes = changed_keys(read_file(file), scene::write_scene(with_kept_models(scene)));
   std::erase_if(changes, [](const std::string& c) { return c.starts_with("output.folder:"); });
   if (!changes.empty())
     fail_input("{}: {} is another scene than the one there ({}); dreampm make --only simulate comes first",

@@ -9,7 +9,7 @@ namespace dreampm::scene {
 
 std::string unknown_name(const model::Scene& scene, const std::string& path) {
   Problems problems;
-  const YamlNode root = read_yaml(emit_scene(scene), "", problems);
+  const YamlNode root = read_yaml(write_scene(scene), "", problems);
   const YamlNode* map = &root;
   for (std::size_t from = 0, dot = path.find('.'); dot != std::string::npos; dot = path.find('.', from)) {
     const std::string name = path.substr(from, dot - from);
