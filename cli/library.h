@@ -23,6 +23,7 @@
 #include "dreampm/pipeline/replace_model.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/simulate.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/pipeline/video_stage.h"
 #include "dreampm/scene/emit.h"

@@ -9,6 +9,7 @@
 #include "dreampm/io/numbered.h"
 #include "dreampm/pipeline/changes.h"
 #include "dreampm/pipeline/estimate.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/render_stage.h"
 #include "dreampm/pipeline/run_folder.h"
@@ -87,6 +88,7 @@ bool make_stages(const model::Scene& scene, const SceneSource& source, const Mak
   write_run_scene(scene, options.folder);
 
   RunFolder run{options.folder, located_in(kept, options.folder), RunRecord::load(options.folder / "run.json"), lock};
+  any |= foam_stage(run).made > 0;
   any |= surface_stage(run).made > 0;
   any |= render_stage(run).made > 0;
   any |= video_stage(run).made > 0;
