@@ -121,7 +121,7 @@ TEST(Cut, ACutFaceOfGlassLetsLightThrough) {
   std::vector<Vec3f> none;
   cut_mesh(ball, none, {{0, 0, 0.2}, {0, 0.3, 1}});
   const Vec3f mean =
-      mean_of(render(before_uniform_sky({&ball, DielectricLook{1.5f, {}, {}}}, 25), small_picture(32, 32, 16)));
+      mean_of(render(before_uniform_sky({&ball, model::Look::dielectric(1.5, {})}, 25), small_picture(32, 32, 16)));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1, 0.012f);
 }
 

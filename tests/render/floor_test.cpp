@@ -15,7 +15,7 @@ using namespace trace;
 RenderScene stage() {
   RenderScene s;
   s.basin = {{0, 0, 0}, {1, 0.5f, 0.6f}};
-  s.stage = {true, false};
+  s.stage = {model::Floor::tiles, model::Basin::none};
   s.physical = true;
   return s;
 }
@@ -58,7 +58,7 @@ TEST(BakedFloor, OpenFloorIsExact) {
 TEST(BakedFloor, ShadowOfABallMatchesAPlainPathTrace) {
   RenderScene scene = stage();
   const TriMesh ball = ball_mesh({0.4f, 0.25f, 0.3f}, 0.15f, 32);
-  scene.objects = {{&ball, OpaqueLook{{0.7f, 0.3f, 0.2f}, 1}}};
+  scene.objects = {{&ball, model::Look::opaque(srgb_of({0.7f, 0.3f, 0.2f}), 1)}};
   const Baked b(scene);
   const Integrator baked = b.integrator(&b.light, true), plain = b.integrator(nullptr, true);
   // where the ball's center throws its shadow, then places around it, clear of the penumbra
@@ -89,9 +89,9 @@ TEST(BakedFloor, SunUnderALevelSurfaceKeepsItsEnergy) {
   // without absorption the floor of a wide pool gets the sun's irradiance times one transmission
   RenderScene scene = stage();
   scene.basin = {{0, 0, 0}, {4, 0.2f, 4}};
-  scene.light.sun_angle = 0.5f;
+  scene.light.sun.angle = 0.5f;
   const TriMesh water = box_mesh({0, 0, 0}, {4, 0.1f, 4});
-  scene.objects = {{&water, DielectricLook{1.333f, {}, {}}}};
+  scene.objects = {{&water, model::Look::dielectric(1.333, {})}};
   const Geometry geometry(scene);
   const Sky sky(scene.light, true);
   FloorLight light(geometry, sky, scene.basin);
@@ -118,7 +118,7 @@ TEST(BakedFloor, UnderALevelSurfaceItMatchesAPlainPathTrace) {
   RenderScene scene = stage();
   scene.basin = {{0, 0, 0}, {1, 0.1f, 1}};
   const TriMesh water = box_mesh({0, 0, 0}, {1, 0.04f, 1});
-  scene.objects = {{&water, DielectricLook{1.333f, {3, 1, 0.3f}, {}}}};
+  scene.objects = {{&water, model::Look::dielectric(1.333, {3, 1, 0.3})}};
   const Baked b(scene);
   const Integrator baked = b.integrator(&b.light, false), plain = b.integrator(nullptr, false);
   for (const auto& [x, z] : {std::pair{0.5f, 0.5f}, {0.6f, 0.45f}}) {
@@ -139,10 +139,11 @@ TEST(BakedFloor, UnderALevelSurfaceItMatchesAPlainPathTrace) {
 
 TEST(BakedFloor, AStrayDropDoesNotBlurIt) {
   RenderScene scene = stage();
-  scene.light.sun_elevation = 90, scene.light.sun_angle = 0.3f;
+  scene.light.sun.elevation = 90, scene.light.sun.angle = 0.3f;
   const TriMesh lens = ball_mesh({0.5f, 0.2f, 0.3f}, 0.1f, 64);
   const std::vector<Vec3f> far{{60, 0.1f, -40}};
-  scene.objects = {{&lens, DielectricLook{1.333f, {}, {}}}, {RenderSpheres{far, 0.01f, {}}, OpaqueLook{}}};
+  scene.objects = {{&lens, model::Look::dielectric(1.333, {})},
+                   {RenderSpheres{far, 0.01f, {}}, model::Look::opaque({0.9, 0.9, 0.9})}};
   const Geometry geometry(scene);
   const Sky sky(scene.light, true);
   FloorLight light(geometry, sky, scene.basin);
@@ -153,9 +154,9 @@ TEST(BakedFloor, AStrayDropDoesNotBlurIt) {
 
 TEST(BakedFloor, ALensGathersSunlightBehindIt) {
   RenderScene scene = stage();
-  scene.light.sun_elevation = 90, scene.light.sun_angle = 0.3f;
+  scene.light.sun.elevation = 90, scene.light.sun.angle = 0.3f;
   const TriMesh ball = ball_mesh({0.5f, 0.2f, 0.3f}, 0.1f, 64);
-  scene.objects = {{&ball, DielectricLook{1.333f, {}, {}}}};
+  scene.objects = {{&ball, model::Look::dielectric(1.333, {})}};
   const Baked bent(scene), straight(scene, false);
   const float open = bent.sky.sun_irradiance().y + bent.sky.open_irradiance().y;
   EXPECT_GT(bent.light.irradiance(0.5f, 0.3f, 1).y, 4 * open) << "the focus";

@@ -27,7 +27,7 @@ TEST(Fresnel, MatchesKnownValuesOfWater) {
 TEST(Furnace, WhiteMatteBallIsInvisible) {
   const TriMesh ball = ball_mesh({}, 1, 24);
   for (const float roughness : {1.0f, 0.4f, 0.05f}) {
-    const auto scene = before_uniform_sky({&ball, OpaqueLook{{1, 1, 1}, roughness}}, 20);
+    const auto scene = before_uniform_sky({&ball, model::Look::opaque(srgb_of({1, 1, 1}), roughness)}, 20);
     const Vec3f mean = mean_of(render(scene, small_picture(32, 32, 16)));
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1, 0.004f) << "roughness " << roughness;
   }
@@ -35,7 +35,7 @@ TEST(Furnace, WhiteMatteBallIsInvisible) {
 
 TEST(Furnace, ClearBallIsInvisible) {
   const TriMesh ball = ball_mesh({}, 1, 48);
-  const auto scene = before_uniform_sky({&ball, DielectricLook{1.333f, {}, {}}}, 30);
+  const auto scene = before_uniform_sky({&ball, model::Look::dielectric(1.333, {})}, 30);
   const Image image = render(scene, small_picture(48, 48, 16));
   const Vec3f mean = mean_of(image);
   EXPECT_NEAR(mean.x, 1, 0.01f);
@@ -45,7 +45,7 @@ TEST(Furnace, ClearBallIsInvisible) {
 TEST(Furnace, GrayBallSendsBackItsAlbedo) {
   const std::vector<Vec3f> at{{0, 0, 0}};
   const std::vector<Vec3f> color{{0.25f, 0.5f, 0.75f}};
-  const auto scene = before_uniform_sky({RenderSpheres{at, 1, color}, OpaqueLook{}}, 12);
+  const auto scene = before_uniform_sky({RenderSpheres{at, 1, color}, model::Look::opaque({0.9, 0.9, 0.9})}, 12);
   const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], color[0][k], 1e-4f);
 }
@@ -56,7 +56,7 @@ TEST(Slab, TransmitsByFresnelAndBeerLambert) {
   float last = 1;
   for (const float thick : {0.1f, 0.3f, 0.9f}) {
     const TriMesh slab = box_mesh({-1, -1, -thick / 2}, {1, 1, thick / 2});
-    const auto scene = before_uniform_sky({&slab, DielectricLook{1.333f, sigma, {}}}, 1);
+    const auto scene = before_uniform_sky({&slab, model::Look::dielectric(1.333, static_cast<Vec3d>(sigma))}, 1);
     const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 32)));
     for (int k = 0; k < 3; ++k) {
       // all orders of reflection inside leave the slab, to one side or the other, where the sky is
@@ -73,7 +73,7 @@ TEST(Render, AMeshMayBringItsOwnColors) {
   const TriMesh ball = ball_mesh({}, 1, 32);
   std::vector<Vec3f> colors;
   for (const Vec3f& v : ball.vertices) colors.push_back(v.x < 0 ? Vec3f{0.8f, 0.1f, 0.1f} : Vec3f{0.1f, 0.1f, 0.6f});
-  const RenderObject object{&ball, OpaqueLook{}, colors};
+  const RenderObject object{&ball, model::Look::opaque({0.9, 0.9, 0.9}), colors};
   const Image image = render(before_uniform_sky(object, 4), small_picture(20, 10, 16));
   // Before a sky of radiance 1 a matte ball shows its reflectance.
   for (int y = 0; y < 10; ++y)
@@ -83,13 +83,15 @@ TEST(Render, AMeshMayBringItsOwnColors) {
       for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], expected[k], 0.02f) << x << ", " << y;
     }
   const std::span<const Vec3f> few = std::span(colors).first(3);
-  EXPECT_THROW(render(before_uniform_sky({&ball, OpaqueLook{}, few}, 4), small_picture(8, 8, 2)), InputError);
+  EXPECT_THROW(
+      render(before_uniform_sky({&ball, model::Look::opaque({0.9, 0.9, 0.9}), few}, 4), small_picture(8, 8, 2)),
+      InputError);
 }
 
 RenderScene little_pool(const TriMesh& water, const TriMesh& ball) {
   RenderScene s;
   s.basin = {{0, 0, 0}, {1, 0.6f, 0.6f}};
-  s.objects = {{&water, DielectricLook{}}, {&ball, OpaqueLook{{0.8f, 0.2f, 0.1f}, 0.4f}}};
+  s.objects = {{&water, model::Look::dielectric()}, {&ball, model::Look::opaque(srgb_of({0.8f, 0.2f, 0.1f}), 0.4f)}};
   return s;
 }
 
@@ -116,7 +118,7 @@ TEST(Render, DeeperWaterReadsBluer) {
     const TriMesh water = box_mesh({0, 0, 0}, {1, depth, 0.6f});
     RenderScene scene = little_pool(water, ball);
     scene.camera.fit_basin = false;
-    scene.camera.from = {0.5f, 2, 0.35f}, scene.camera.to = {0.5f, 0, 0.3f}, scene.camera.fov = 10;
+    scene.camera.from = {0.5, 2, 0.35}, scene.camera.to = {0.5, 0, 0.3}, scene.camera.fov = 10;
     const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 4)));
     EXPECT_GT(mean.z / mean.x, last * 1.1f) << "depth " << depth;
     last = mean.z / mean.x;
@@ -126,7 +128,7 @@ TEST(Render, DeeperWaterReadsBluer) {
 TEST(Render, NamesWhatIsOutOfRange) {
   const TriMesh ball = ball_mesh({}, 1, 4);
   const auto fails = [&](auto change, const char* word) {
-    RenderScene scene = before_uniform_sky({&ball, OpaqueLook{}}, 30);
+    RenderScene scene = before_uniform_sky({&ball, model::Look::opaque({0.9, 0.9, 0.9})}, 30);
     RenderSettings settings = small_picture(8, 8, 2);
     TriMesh broken = ball;
     change(scene, settings, broken);
@@ -140,7 +142,7 @@ TEST(Render, NamesWhatIsOutOfRange) {
   fails([](RenderScene&, RenderSettings& s, TriMesh&) { s.width = 0; }, "width");
   fails([](RenderScene&, RenderSettings& s, TriMesh&) { s.noise = std::nanf(""); }, "noise");
   fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.basin.max.y = -2; }, "basin");
-  fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.objects[0].look = DielectricLook{0.5f, {}, {}}; }, "ior");
+  fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.objects[0].look = model::Look::dielectric(0.5, {}); }, "ior");
   fails([](RenderScene& s, RenderSettings&, TriMesh&) { s.camera.to = s.camera.from; }, "from");
   fails(
       [](RenderScene& s, RenderSettings&, TriMesh& m) {

@@ -20,8 +20,8 @@ struct Slabs {
   explicit Slabs(float water_from, float wetting = 0)
       : glass(box_mesh({-0.2f, -0.9f, -0.9f}, {0, 0.9f, 0.9f})),
         water(box_mesh({water_from, -0.8f, -0.8f}, {0.4f, 0.8f, 0.8f})) {
-    scene = before_uniform_sky({&water, DielectricLook{water_ior, {}, {}}}, 1);
-    scene.objects.push_back({&glass, DielectricLook{glass_ior, {}, {}}, {}, {}, 1});
+    scene = before_uniform_sky({&water, model::Look::dielectric(water_ior, {})}, 1);
+    scene.objects.push_back({&glass, model::Look::dielectric(glass_ior, {}), {}, {}, 1});
     scene.wetting = wetting;
   }
   TriMesh glass, water;
@@ -123,8 +123,8 @@ TEST(Nested, WaterFillsTheCornersOfGlass) {
     water.vertices.push_back(Vec3f{0.03f, 0.03f, 0.03f} + n * 0.02f);
     water.normals.push_back(n);
   }
-  RenderScene scene = before_uniform_sky({&water, DielectricLook{water_ior, {}, {}}}, 1);
-  scene.objects.push_back({&walls, DielectricLook{glass_ior, {}, {}}, {}, {}, 1});
+  RenderScene scene = before_uniform_sky({&water, model::Look::dielectric(water_ior, {})}, 1);
+  scene.objects.push_back({&walls, model::Look::dielectric(glass_ior, {}), {}, {}, 1});
   scene.wetting = 0.05f;
   const auto wet = wetted(scene, scene.objects[0], 1e-5f);
   ASSERT_TRUE(wet);
@@ -164,8 +164,8 @@ TEST(Nested, MediaKeepTheirRank) {
 
 TEST(Furnace, WaterInGlassIsInvisible) {
   const TriMesh outside = ball_mesh({}, 1, 48), inside = ball_mesh({0, 0, 0.45f}, 0.8f, 48);
-  auto scene = before_uniform_sky({&inside, DielectricLook{water_ior, {}, {}}}, 30);
-  scene.objects.push_back({&outside, DielectricLook{glass_ior, {}, {}}, {}, {}, 1});
+  auto scene = before_uniform_sky({&inside, model::Look::dielectric(water_ior, {})}, 30);
+  scene.objects.push_back({&outside, model::Look::dielectric(glass_ior, {}), {}, {}, 1});
   for (const bool water_first : {false, true}) {
     scene.objects[1].priority = water_first ? -1 : 1;
     const Vec3f mean = mean_of(render(scene, small_picture(32, 32, 16)));

@@ -17,23 +17,24 @@ using namespace trace;
 TEST(Furnace, WhiteRoughBallsAreInvisible) {
   const TriMesh ball = ball_mesh({}, 1, 24);
   for (const float roughness : {0.0f, 0.2f, 0.5f, 1.0f})
-    for (const RenderLook& look :
-         {RenderLook{MetalLook{{1, 1, 1}, roughness}}, RenderLook{PlasticLook{{1, 1, 1}, roughness}}}) {
+    for (const model::Look& look :
+         {model::Look::metal({1, 1, 1}, roughness), model::Look::plastic({1, 1, 1}, roughness)}) {
       const Vec3f mean = mean_of(render(before_uniform_sky({&ball, look}, 20), small_picture(32, 32, 16)));
-      for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1, 0.006f) << "roughness " << roughness << " " << look.index();
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(mean[k], 1, 0.006f) << "roughness " << roughness
+                                        << (look.type == model::LookType::metal ? ", metal" : ", plastic");
     }
 }
 
 TEST(Furnace, NoLookGivesLightAway) {
   const TriMesh ball = ball_mesh({}, 1, 24);
   for (const float roughness : {0.0f, 0.3f, 1.0f})
-    for (const RenderLook& look :
-         {RenderLook{MetalLook{{0.9f, 0.6f, 0.2f}, roughness}}, RenderLook{PlasticLook{{0.9f, 0.6f, 0.2f}, roughness}},
-          RenderLook{WoodLook{{0.9f, 0.6f, 0.2f}, roughness, 0.1f}}}) {
+    for (const auto make : {model::Look::metal, model::Look::plastic, model::Look::wood}) {
+      const model::Look look = make(srgb_of({0.9f, 0.6f, 0.2f}), roughness);
       const Vec3f mean = mean_of(render(before_uniform_sky({&ball, look}, 12), small_picture(24, 24, 16)));
       for (int k = 0; k < 3; ++k) {
-        EXPECT_LT(mean[k], 1) << look.index();
-        EXPECT_GT(mean[k], 0.08f) << look.index();
+        EXPECT_LT(mean[k], 1) << static_cast<int>(look.type);
+        EXPECT_GT(mean[k], 0.08f) << static_cast<int>(look.type);
       }
       EXPECT_GT(mean.x, mean.y);
       EXPECT_GT(mean.y, mean.z);
@@ -58,8 +59,7 @@ TEST(RoughSurface, SamplesAgreeWithTheFormula) {
   const Vec3f color{0.9f, 0.5f, 0.1f};
   for (const float outer : {1.0f, 1.333f})
     for (const float roughness : {0.4f, 0.7f, 1.0f})
-      for (const RenderLook& look :
-           {RenderLook{MetalLook{color, roughness}}, RenderLook{PlasticLook{color, roughness}}}) {
+      for (const Look& look : {Look{Metal{color, roughness}}, Look{Plastic{color, roughness}}}) {
         const RoughSurface surface(look, outer);
         for (const float c : {0.95f, 0.5f, 0.2f}) {
           const Vec3f view{std::sqrt(1 - c * c), 0, c};
@@ -86,30 +86,30 @@ TEST(RoughSurface, SamplesAgreeWithTheFormula) {
 TEST(RoughSurface, PlasticIsTheSameBothWays) {
   const Vec3f color{0.2f, 0.5f, 0.8f}, a = normalized(Vec3f{0.3f, 0.2f, 0.6f}),
                                        b = normalized(Vec3f{-0.7f, 0.1f, 0.3f});
-  const RoughSurface surface(PlasticLook{color, 0.5f}, 1);
+  const RoughSurface surface(Plastic{color, 0.5f}, 1);
   const Vec3f there = surface.scattered(a, b, color) / b.z, back = surface.scattered(b, a, color) / a.z;
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(there[k], back[k], 1e-4f);
 }
 
 TEST(RoughSurface, MetalReflectsItsColorAhead) {
   const Vec3f color{0.9f, 0.5f, 0.1f};
-  const RoughSurface surface(MetalLook{color, 0.05f}, 1);
+  const RoughSurface surface(Metal{color, 0.05f}, 1);
   const RoughSurface::Sample s = surface.sample_gloss({0, 0, 1}, color, 0.3f, 0.6f);
   EXPECT_NEAR(s.light.z, 1, 1e-3f);
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(s.weight[k], color[k], 0.01f);
   EXPECT_TRUE(surface.mirror());
-  EXPECT_FALSE(RoughSurface(MetalLook{color, 0.3f}, 1).mirror());
+  EXPECT_FALSE(RoughSurface(Metal{color, 0.3f}, 1).mirror());
 }
 
 TEST(RoughSurface, TheSunLightsThemAsItsDiscWould) {
   // A wide sun with its true radiance: what direct light gives must be what a bounce would find.
   const TriMesh plate = box_mesh({-1, -0.1f, -1}, {1, 0, 1});
-  RenderScene scene = before_uniform_sky({&plate, PlasticLook{{0.5f, 0.5f, 0.5f}, 0.6f}}, 8);
-  scene.camera.from = {0.2f, 4, 0.1f};
-  scene.light.sun_strength = 5, scene.light.sun_elevation = 60, scene.light.sun_angle = 10;
+  RenderScene scene = before_uniform_sky({&plate, model::Look::plastic(srgb_of({0.5f, 0.5f, 0.5f}), 0.6)}, 8);
+  scene.camera.from = {0.2, 4, 0.1};
+  scene.light.sun.strength = 5, scene.light.sun.elevation = 60, scene.light.sun.angle = 10;
   const Vec3f mean = mean_of(render(scene, small_picture(16, 16, 64)));
   const Sky sky(scene.light, true);
-  const RoughSurface surface(scene.objects[0].look, 1);
+  const RoughSurface surface(traced(scene.objects[0].look), 1);
   const Vec3f view = normalized(Vec3f{0.2f, 0.1f, 4});  // x, z, and up as z
   Vec3d expected;
   constexpr int n = 300;
@@ -123,7 +123,7 @@ TEST(RoughSurface, TheSunLightsThemAsItsDiscWould) {
 TEST(Wood, IsOfOnePieceAndItsGrainRunsAlong) {
   TextureFrame frame;
   frame.half = {0.2f, 0.05f, 0.02f};
-  const WoodLook look;
+  const Wood look;
   const auto difference = [&](const Vec3f& step) {
     float sum = 0;
     for (int i = 0; i < 400; ++i) {
@@ -152,7 +152,7 @@ TEST(Wood, GoesWithItsBody) {
 
 TEST(Wood, FarAwayIsItsMean) {
   TextureFrame frame;
-  const WoodLook look;
+  const Wood look;
   float low = 1, high = 0;
   for (int i = 0; i < 100; ++i) {
     const Vec3f p{0.001f * static_cast<float>(i), 0.0013f * static_cast<float>(i) - 0.05f, 0.02f};

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "dreampm/math/srgb.h"
 #include "dreampm/render/render.h"
 
 namespace dreampm {
@@ -41,6 +42,12 @@ inline TriMesh ball_mesh(const Vec3f& center, float radius, std::uint32_t rows) 
   return m;
 }
 
+/// The color of a look whose linear reflectance is that.
+inline Vec3d srgb_of(const Vec3f& linear) {
+  const auto channel = [](float x) { return srgb_from_linear(static_cast<double>(x)); };
+  return {channel(linear.x), channel(linear.y), channel(linear.z)};
+}
+
 /// One object before a sky of radiance 1, without sun, floor or glass, seen along -z.
 inline RenderScene before_uniform_sky(const RenderObject& object, float fov) {
   RenderScene s;
@@ -48,8 +55,8 @@ inline RenderScene before_uniform_sky(const RenderObject& object, float fov) {
   s.objects = {object};
   s.camera.fit_basin = false;
   s.camera.from = {0, 0, 4}, s.camera.to = {0, 0, 0}, s.camera.fov = fov;
-  s.light.sun_strength = 0, s.light.sky = SkyKind::uniform;
-  s.stage = {false, false};
+  s.light.sun.strength = 0, s.light.sky = SkyKind::uniform;
+  s.stage = {model::Floor::none, model::Basin::none};
   s.physical = true;
   return s;
 }

@@ -32,7 +32,7 @@ TEST(Tone, AHighlightBleedsIntoItsNeighborsOnly) {
 
 TEST(Png, HoldsWhatToneMapGives) {
   const TriMesh ball = ball_mesh({}, 1, 12);
-  const auto scene = before_uniform_sky({&ball, OpaqueLook{{0.9f, 0.2f, 0.1f}, 1}}, 40);
+  const auto scene = before_uniform_sky({&ball, model::Look::opaque(srgb_of({0.9f, 0.2f, 0.1f}), 1)}, 40);
   const Image image = render(scene, small_picture(20, 12, 2));
   const auto path = std::filesystem::path(testing::TempDir()) / "render-tone-test.png";
   write_png(path, image);

@@ -41,7 +41,7 @@ TEST(DrawnColliders, TheGrainGoesWithTheBody) {
     EXPECT_NEAR(a.middle[k], 0.4f, 1e-5f) << "from the shift on";
     EXPECT_NEAR(b.middle[k], 0.4f, 1e-5f);
   }
-  EXPECT_FLOAT_EQ(std::get<WoodLook>(after.objects.at(0).look).ring, 0.01f);
+  EXPECT_EQ(after.objects.at(0).look.ring, 0.01);
 }
 
 TEST(DrawnColliders, ThePlaneOfTheCutStaysWhereItIs) {

@@ -7,17 +7,10 @@
 #include <vector>
 
 #include "dreampm/export/axes.h"
+#include "dreampm/export/material.h"
 #include "dreampm/pose.h"
 
 namespace dreampm::exchange {
-
-/// How matter looks, as far as other programs know it.
-struct ClipMaterial {
-  std::string name;
-  Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear
-  float roughness = 0.5f, metallic = 0;
-  std::optional<float> ior{};  ///< of clear matter
-};
 
 /// A collider or a rigid body.
 struct ClipObject {

@@ -112,7 +112,7 @@ ColliderModels::ColliderModels(const model::Scene& scene, const Vec3d& shift) : 
     std::optional<Vec3f> grain;
     if (look.grain) grain = static_cast<Vec3f>(*look.grain);
     const TextureFrame frame = texture_frame(mesh, grain);
-    models_.push_back({c.name, std::move(mesh), render_look(look), frame, cut_of(scene, c.name, shift),
+    models_.push_back({c.name, std::move(mesh), look, frame, cut_of(scene, c.name, shift),
                        motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
     if (!ends_at_the_panes(c, look, room)) continue;
     models_.back().within = Box3d{room.min - shift, room.max - shift};
@@ -175,10 +175,10 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) cons
   return out;
 }
 
-RenderLook material_look(const model::Scene& scene, int material) {
+model::Look material_look(const model::Scene& scene, int material) {
   model::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
   look.color = body_color(scene, material).value_or(look.color);
-  return render_look(look);
+  return look;
 }
 
 }  // namespace dreampm

@@ -15,7 +15,7 @@
 namespace dreampm {
 
 /// The look of a material. One whose bodies all have one color takes that.
-RenderLook material_look(const model::Scene& scene, int material);
+model::Look material_look(const model::Scene& scene, int material);
 
 /// Have the material's bodies different colors? (Those without one have the look's.)
 bool many_colored(const model::Scene& scene, int material);
@@ -60,7 +60,7 @@ class ColliderModels {
   ColliderModels(const model::Scene& scene, const Vec3d& shift);
   std::size_t size() const { return models_.size(); }
   const std::string& name(std::size_t collider) const { return models_[collider].name; }
-  const RenderLook& look(std::size_t collider) const { return models_[collider].look; }
+  const model::Look& look(std::size_t collider) const { return models_[collider].look; }
   /// Whether its mesh is another at other times.
   bool deforms(std::size_t collider) const { return models_[collider].sequence != nullptr; }
   /// Its mesh, uncut, as the scene gives it; at a time [s] if it deforms. Empty of a pin.
@@ -77,7 +77,7 @@ class ColliderModels {
   struct Model {
     std::string name;
     TriMesh mesh;
-    RenderLook look;
+    model::Look look;
     TextureFrame frame;  ///< at rest
     std::optional<CutPlane> cut;
     std::shared_ptr<const MotionPath> path;

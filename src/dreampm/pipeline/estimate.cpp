@@ -78,7 +78,7 @@ std::vector<std::string> refused_later(const model::Scene& scene) {
   for (std::size_t m = 0; m < scene.materials.size(); ++m)
     picture.objects.push_back({RenderSpheres{}, material_look(scene, static_cast<int>(m)), {}});
   for (const model::Collider& c : scene.colliders)
-    picture.objects.push_back({RenderSpheres{}, render_look(scene.render.looks.at(c.name)), {}});
+    picture.objects.push_back({RenderSpheres{}, scene.render.looks.at(c.name), {}});
   try {
     check_render(picture, render_settings(scene));
   } catch (const InputError& e) {

@@ -7,46 +7,25 @@
 #include "dreampm/base/interrupt.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/progress.h"
+#include "dreampm/export/material.h"
+#include "dreampm/math/camera_view.h"
 #include "dreampm/pictures/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
-#include "dreampm/render/camera_place.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 using namespace exchange;
 
-ClipMaterial material_of(const std::string& name, const RenderLook& look) {
-  ClipMaterial out;
-  out.name = name;
-  if (const auto* clear = std::get_if<DielectricLook>(&look)) {
-    out.color = light_through(static_cast<Vec3d>(clear->absorption));
-    out.roughness = 0;
-    out.ior = clear->ior;
-    return out;
-  }
-  std::visit(
-      [&](const auto& l) {
-        if constexpr (requires { l.color; }) out.color = l.color, out.roughness = l.roughness;
-      },
-      look);
-  out.metallic = std::holds_alternative<MetalLook>(look) ? 1.0f : 0.0f;
-  return out;
-}
-
 /// Where `dreampm render` looks from.
-ClipCamera camera_of(const model::Scene& scene, const Vec3d& shift, const Axes& axes) {
-  const RenderScene view = render_scene(scene, shift);
-  const RenderSettings size = render_settings(scene);
-  const CameraPlace place = camera_place(view, size);
-  const Vec3d eye = static_cast<Vec3d>(place.eye);
-  const auto turned = [&](const Vec3f& v) { return axes.turned(static_cast<Vec3d>(v)); };
-  const double reach =
-      length(static_cast<Vec3d>(view.basin.center()) - eye) + 2 * length(static_cast<Vec3d>(view.basin.size()));
-  ClipCamera out{axes.placed(eye + shift), turned(place.right), turned(place.up), turned(place.forward)};
-  out.fov = view.camera.fov;
-  out.aspect = static_cast<double>(size.width) / size.height;
-  out.far = reach * axes.scale;
+ClipCamera camera_of(const model::Scene& scene, const Axes& axes) {
+  const Box3d box{scene.space.min, scene.space.end()};
+  const double aspect = static_cast<double>(scene.render.width) / scene.render.height;
+  const CameraView view = camera_view(scene.render.camera, box, aspect);
+  ClipCamera out{axes.placed(view.eye), axes.turned(view.right), axes.turned(view.up), axes.turned(view.forward)};
+  out.fov = view.fov;
+  out.aspect = aspect;
+  out.far = (length(box.center() - view.eye) + 2 * length(box.size())) * axes.scale;
   return out;
 }
 
@@ -203,7 +182,7 @@ ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::
     clip.materials.push_back(material_of(scene.materials[std::size_t(m)].name, material_look(scene, m)));
   clip.particles = options.particles;
   clip.meshed = meshed_of(run, options, frames);
-  clip.camera = camera_of(scene, run.record.shift, options.axes);
+  clip.camera = camera_of(scene, options.axes);
   return clip;
 }
 

@@ -20,12 +20,14 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-const std::map<std::string, RenderLook>& looks() {
-  static const std::map<std::string, RenderLook> all{{"water", DielectricLook{}},
-                                                     {"glass", DielectricLook{1.5f, {0.4f, 0.2f, 0.3f}, {}}},
-                                                     {"clay", OpaqueLook{linear_color({0.93, 0.33, 0.23}), 1}},
-                                                     {"plastic", PlasticLook{}},
-                                                     {"metal", MetalLook{}}};
+const std::map<std::string, model::Look>& looks() {
+  static const std::map<std::string, model::Look> all{
+      {"water", model::Look::dielectric()},
+      {"glass", model::Look::dielectric(1.5, {0.4, 0.2, 0.3})},
+      {"clay", model::Look::opaque({0.93, 0.33, 0.23})},
+      {"plastic", model::Look::plastic()},
+      {"metal", model::Look::metal()},
+  };
   return all;
 }
 
@@ -70,31 +72,30 @@ View view_of(const LoosePictures& request) {
   RenderScene& scene = view.scene;
   scene.basin = {static_cast<Vec3f>(-margin), static_cast<Vec3f>(size + margin)};
   scene.is_wall.fill(false);
-  scene.stage.basin_glass = false;
-  scene.camera.azimuth = static_cast<float>(request.azimuth);
-  scene.camera.elevation = static_cast<float>(request.elevation);
+  scene.stage.basin = model::Basin::none;
+  scene.camera.azimuth = request.azimuth;
+  scene.camera.elevation = request.elevation;
   return view;
 }
 
 /// Nothing says how long a unit is: what is clear looks as if the longest side were a meter.
-RenderLook look_of(const LoosePictures& request, const Model& model, const View& view) {
-  const bool clear = !model.triangles.empty() && openness(model).open_edges == 0;
-  RenderLook look = looks().at(!request.look.empty() ? request.look : clear ? "water" : "clay");
-  if (auto* d = std::get_if<DielectricLook>(&look)) {
-    if (!clear) fail_input("--look {}: clear matter needs a closed mesh; clay, plastic and metal do not", request.look);
-    d->absorption = d->absorption / static_cast<float>(view.longest);
-  }
+model::Look look_of(const LoosePictures& request, const Model& model, const View& view) {
+  const bool closed = !model.triangles.empty() && openness(model).open_edges == 0;
+  model::Look look = looks().at(!request.look.empty() ? request.look : closed ? "water" : "clay");
+  if (look.type != model::LookType::dielectric) return look;
+  if (!closed) fail_input("--look {}: clear matter needs a closed mesh; clay, plastic and metal do not", request.look);
+  look.absorption = look.absorption / view.longest;
   return look;
 }
 
-Image draw(const Model& model, const RenderLook& look, const View& view, const RenderSettings& settings) {
+Image draw(const Model& model, const model::Look& look, const View& view, const RenderSettings& settings) {
   RenderScene scene = view.scene;
   const TriMesh mesh = about(model, view.shift);
   std::vector<Vec3f> colors;
   for (const auto& c : model.colors) colors.push_back(linear_color(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
   if (model.triangles.empty())
     scene.objects.push_back({RenderSpheres{mesh.vertices, static_cast<float>(view.radius), colors}, look, {}});
-  else if (std::holds_alternative<OpaqueLook>(look))
+  else if (look.type == model::LookType::opaque)
     scene.objects.push_back({&mesh, look, colors});
   else
     scene.objects.push_back({&mesh, look, {}});
@@ -122,7 +123,7 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
     if (interrupted()) throw Interrupted(fmt::format("render: interrupted before {}", request.files[i]));
     progress.update(i);
     const Model model = load(request.files[i], request.up);
-    const RenderLook look = look_of(request, model, view);
+    const model::Look look = look_of(request, model, view);
     make_folder(request.out);
     write_png(names[i], draw(model, look, view, settings));
   }

@@ -6,9 +6,8 @@ namespace dreampm::trace {
 
 class Camera {
  public:
-  /// Solves distance and aim so that the basin's corners fill the asked share of a width x height
-  /// frame, or takes the asked place.
-  Camera(const RenderCamera& wish, const Box3f& basin, int width, int height);
+  /// Of a width x height frame, as camera_view says.
+  Camera(const model::Camera& camera, const Box3f& basin, int width, int height);
   const Vec3f& eye() const { return eye_; }
   /// Through the point (x, y) of the frame in pixels from the upper left; unit length.
   Vec3f direction(float x, float y) const;
@@ -18,8 +17,6 @@ class Camera {
   float pixel_angle() const { return 2 * tan_half_ / static_cast<float>(height_); }
 
  private:
-  void fit(const Box3f& basin, float fill);
-
   int width_, height_;
   float tan_half_;
   Vec3f eye_, forward_, right_, up_;

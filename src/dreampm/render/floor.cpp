@@ -98,7 +98,7 @@ void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, 
       const Hit hit = cast_visible(geometry_, r.o, r.d, r.media);
       if (hit.kind == Kind::none || hit.kind == Kind::opaque) break;
       if (const int medium = r.media.top(); medium != air)
-        r.weight = r.weight * transmission(std::get<DielectricLook>(geometry_.look(medium)).absorption, hit.t);
+        r.weight = r.weight * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);
       const Vec3f p = r.o + r.d * hit.t;
       if (hit.kind == Kind::floor) {
         land(p, r.weight);

@@ -80,7 +80,7 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
       r.distance += hit.t;
       const int medium = r.media.top();
       if (medium != air) {
-        const auto& look = std::get<DielectricLook>(geometry_.look(medium));
+        const auto& look = std::get<Dielectric>(geometry_.look(medium));
         if (glows) sum += r.weight * look.glow * (1 - std::exp(-glow_rate * hit.t));
         r.weight = r.weight * transmission(look.absorption, hit.t);
       }
@@ -89,7 +89,7 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
         alive = at_floor(r, p, random, sum);
       } else {
         if (++r.bounces > limit) {
-          if (glows && medium != air) sum += r.weight * std::get<DielectricLook>(geometry_.look(medium)).glow;
+          if (glows && medium != air) sum += r.weight * std::get<Dielectric>(geometry_.look(medium)).glow;
           break;
         }
         if (const float w = largest(r.weight); w < weak) {
@@ -98,7 +98,7 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
         }
         if (hit.kind != Kind::opaque)
           alive = at_clear(r, hit, p, random, sum, stack);
-        else if (std::holds_alternative<OpaqueLook>(geometry_.look(hit.object)))
+        else if (std::holds_alternative<Opaque>(geometry_.look(hit.object)))
           alive = at_opaque(r, hit, p, random, sum, stack);
         else
           alive = at_rough(r, hit, p, random, sum, stack);
@@ -137,7 +137,7 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum) 
 }
 
 bool Integrator::at_opaque(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
-  const float roughness = std::get<OpaqueLook>(geometry_.look(hit.object)).roughness;
+  const float roughness = std::get<Opaque>(geometry_.look(hit.object)).roughness;
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
   const SunSample sun = sunlight(p, n, face, r.media, random);
   if (roughness < 1) {
@@ -179,7 +179,7 @@ bool Integrator::at_rough(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
   const Frame frame(n);
   Vec3f color = hit.color;
-  if (const auto* wood = std::get_if<WoodLook>(&geometry_.look(hit.object))) {
+  if (const auto* wood = std::get_if<Wood>(&geometry_.look(hit.object))) {
     const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
     color = wood_color(*wood, geometry_.frame(hit.object), p, r.distance * options_.pixel_angle / slant);
   }
@@ -262,8 +262,7 @@ Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, Media m
     const Vec3f p = o + d * hit.t;
     if (hit.kind == Kind::dielectric) {
       const int medium = media.top();
-      if (medium != air)
-        share = share * transmission(std::get<DielectricLook>(geometry_.look(medium)).absorption, hit.t);
+      if (medium != air) share = share * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);
       const float before = ior(geometry_, media);
       media = across(geometry_, hit, media);
       if (media.top() == air) d = to_sun;

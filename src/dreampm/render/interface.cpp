@@ -43,7 +43,7 @@ void Media::remove(int object) {
 }
 
 float ior(const Geometry& geometry, const Media& media) {
-  return media.top() == air ? 1 : std::get<DielectricLook>(geometry.look(media.top())).ior;
+  return media.top() == air ? 1 : std::get<Dielectric>(geometry.look(media.top())).ior;
 }
 
 Media across(const Geometry& geometry, const Hit& hit, Media media) {

@@ -14,7 +14,7 @@ namespace dreampm::trace {
 namespace {
 
 /// Of a look that is not clear.
-Vec3f color_of(const RenderLook& look) {
+Vec3f color_of(const Look& look) {
   return std::visit(
       [](const auto& l) {
         if constexpr (requires { l.color; })
@@ -50,7 +50,7 @@ struct Geometry::Shape {
   std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
   std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
 
-  Vec3f color(const RenderLook& look, std::size_t primitive, float u, float v) const {
+  Vec3f color(const Look& look, std::size_t primitive, float u, float v) const {
     if (colors.empty()) return color_of(look);
     if (spheres) return colors[primitive];
     const auto& [a, b, c] = triangles[primitive];
@@ -63,8 +63,8 @@ Geometry::Geometry(const RenderScene& scene)
       basin_(scene.basin),
       bounds_(scene.basin),
       is_wall_(scene.is_wall),
-      has_floor_(scene.stage.floor_tiles),
-      has_glass_(scene.stage.basin_glass),
+      has_floor_(scene.stage.floor == model::Floor::tiles),
+      has_glass_(scene.stage.basin == model::Basin::glass),
       floor_y_(scene.basin.min.y) {
   const Vec3f size = basin_.size();
   scale_ = std::max(size.x, size.z);
@@ -74,7 +74,7 @@ Geometry::Geometry(const RenderScene& scene)
     fail_run("Embree found no device: error {}", static_cast<int>(rtcGetDeviceError(nullptr)));
   embree_->scene = rtcNewScene(embree_->device);
   for (const RenderObject& o : scene.objects) {
-    looks_.push_back(o.look);
+    looks_.push_back(traced(o.look));
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
     if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
@@ -125,7 +125,7 @@ void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int 
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
   shape.colors.assign(colors.begin(), colors.end());
-  shape.kind = std::holds_alternative<DielectricLook>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.triangles = mesh.triangles;
   shape.walls.resize(mesh.triangles.size());
@@ -169,7 +169,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
                object);
   if (n == 0) return;
   Shape shape;
-  shape.kind = std::holds_alternative<DielectricLook>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.spheres = true;
   shape.colors.assign(spheres.colors.begin(), spheres.colors.end());

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "dreampm/render/looks.h"
 #include "dreampm/render/render.h"
 
 namespace dreampm::trace {
@@ -43,7 +44,7 @@ class Geometry {
   float epsilon() const { return epsilon_; }
   float floor_y() const { return floor_y_; }
   int objects() const { return static_cast<int>(looks_.size()); }
-  const RenderLook& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
+  const Look& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
   const TextureFrame& frame(int object) const { return frames_[static_cast<std::size_t>(object)]; }
   /// Of overlapping objects that of the highest rank is there.
   int rank(int object) const { return ranks_[static_cast<std::size_t>(object)]; }
@@ -58,8 +59,8 @@ class Geometry {
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
   std::unique_ptr<Embree> embree_;
-  std::vector<Shape> shapes_;      ///< by Embree's geometry number
-  std::vector<RenderLook> looks_;  ///< these three by object
+  std::vector<Shape> shapes_;  ///< by Embree's geometry number
+  std::vector<Look> looks_;    ///< these three by object
   std::vector<TextureFrame> frames_;
   std::vector<int> ranks_;
   Box3f basin_, bounds_;

@@ -132,10 +132,10 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
              length(scene.camera.to - scene.camera.from) <= 0) {
     fail_input("render: the camera's `from` and `to` are the same point or not finite; give two points");
   }
-  in_range("sun elevation", scene.light.sun_elevation, 2, 90);
-  in_range("sun azimuth", scene.light.sun_azimuth, -3600, 3600);
-  in_range("sun angle", scene.light.sun_angle, 0.1, 20);
-  in_range("sun strength", scene.light.sun_strength, 0, 1e6);
+  in_range("sun elevation", scene.light.sun.elevation, 2, 90);
+  in_range("sun azimuth", scene.light.sun.azimuth, -3600, 3600);
+  in_range("sun angle", scene.light.sun.angle, 0.1, 20);
+  in_range("sun strength", scene.light.sun.strength, 0, 1e6);
   in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
@@ -144,20 +144,15 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   for (const RenderObject& o : scene.objects) {
     if (const auto* mesh = std::get_if<const TriMesh*>(&o.form); mesh != nullptr && *mesh == nullptr)
       fail_input("render: an object has no mesh");
-    if (const auto* d = std::get_if<DielectricLook>(&o.look)) {
-      in_range("ior", d->ior, 1.01, 3);
-      for (int k = 0; k < 3; ++k)
-        in_range("absorption", d->absorption[k], 0, 1e6), in_range("glow", d->glow[k], 0, 1e3);
+    const model::Look& look = o.look;
+    if (look.type == model::LookType::dielectric) {
+      in_range("ior", look.ior, 1.01, 3);
+      for (int k = 0; k < 3; ++k) in_range("absorption", look.absorption[k], 0, 1e6);
+      continue;
     }
-    std::visit(
-        [](const auto& look) {
-          if constexpr (requires { look.color; }) {
-            in_range("roughness", look.roughness, 0, 1);
-            for (int k = 0; k < 3; ++k) in_range("color", look.color[k], 0, 1);
-          }
-          if constexpr (requires { look.ring; }) in_range("ring", look.ring, 0, 100);
-        },
-        o.look);
+    in_range("roughness", look.roughness, 0, 1);
+    in_range("ring", look.ring.value_or(0), 0, 100);
+    for (int k = 0; k < 3; ++k) in_range("color", look.color[k], 0, 1);
   }
 }
 
@@ -172,7 +167,7 @@ Image render(const RenderScene& scene, const RenderSettings& settings, const Ren
   const trace::Camera camera(scene.camera, scene.basin, settings.width, settings.height);
   const float scale = std::max(scene.basin.size().x, scene.basin.size().z);
   FloorLight light(geometry, sky, scene.basin);
-  if (scene.stage.floor_tiles) {
+  if (scene.stage.floor == model::Floor::tiles) {
     light.bake_sun(settings.caustics, photons, settings.seed);
     PathOptions gather;
     gather.floor_light = &light;

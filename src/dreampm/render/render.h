@@ -17,35 +17,6 @@
 
 namespace dreampm {
 
-/// A smooth interface around a clear medium that absorbs by Beer-Lambert: water, honey, glass.
-struct DielectricLook {
-  float ior = 1.333f;                  ///< 1.01 to 3
-  Vec3f absorption{6.0f, 1.7f, 0.5f};  ///< 1/m for red, green, blue; >= 0
-  Vec3f glow{0.03f, 0.22f, 0.34f};     ///< radiance scattered inside a thick layer: a look, left out if physical
-};
-/// A matte surface, under a clear coat where roughness < 1.
-struct OpaqueLook {
-  Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
-  float roughness = 1;            ///< of the coat, 0 (polished) to 1 (no coat)
-};
-/// Wood under a satin varnish: rings about a pith, and fibers along it, in the frame of its object.
-struct WoodLook {
-  Vec3f color{0.51f, 0.25f, 0.09f};  ///< linear reflectance of the early wood, 0 to 1; late wood is darker
-  float roughness = 0.45f;           ///< of the varnish, 0 to 1
-  float ring = 0;                    ///< m from ring to ring; 0: by the size of the object
-};
-/// A rough conductor.
-struct MetalLook {
-  Vec3f color{0.56f, 0.57f, 0.58f};  ///< linear reflectance square to the surface, 0 to 1
-  float roughness = 0.3f;            ///< 0 (a mirror) to 1
-};
-/// A matte base under a clear, rough coat.
-struct PlasticLook {
-  Vec3f color{0.34f, 0.01f, 0.01f};  ///< linear reflectance of the base, 0 to 1
-  float roughness = 0.2f;            ///< of the coat, 0 (polished) to 1
-};
-using RenderLook = std::variant<DielectricLook, OpaqueLook, WoodLook, MetalLook, PlasticLook>;
-
 /// The frame in which a solid texture lies: wood's fibers run along x, and its pith is off the
 /// middle along z. Axes of unit length, square to each other.
 struct TextureFrame {
@@ -66,7 +37,7 @@ struct RenderSpheres {
 /// basin's planes.
 struct RenderObject {
   std::variant<const TriMesh*, RenderSpheres> form;
-  RenderLook look;
+  model::Look look;
   std::span<const Vec3f> colors{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's color
   TextureFrame frame{};             ///< of wood
   /// Where clear objects overlap, the one with the higher priority is there; of one priority, the
@@ -74,34 +45,13 @@ struct RenderObject {
   int priority = 0;
 };
 
-/// Angles in degrees; azimuth from +x towards +z.
-struct RenderCamera {
-  bool fit_basin = true;               ///< from azimuth, elevation and fill; else from `from` to `to`
-  float azimuth = 60, elevation = 14;  ///< where the camera stands, seen from the basin
-  float fov = 34;                      ///< vertical, 1 to 150
-  float fill = 0.84f;                  ///< share of the frame that the basin's corners fill, 0.05 to 2
-  Vec3f from{}, to{};                  ///< m
-};
-
-struct RenderLight {
-  float sun_elevation = 34, sun_azimuth = 228;  ///< degrees; elevation 2 to 90
-  float sun_angle = 2.5f;                       ///< radius of the visible disc, degrees, 0.1 to 20
-  float sun_strength = 8;                       ///< irradiance square to the sun; 0: no sun
-  SkyKind sky = SkyKind::clear;
-};
-
-struct RenderStage {
-  bool floor_tiles = true;  ///< a tiled terrace at the basin's lowest plane
-  bool basin_glass = true;  ///< thin panes at the side walls, open above
-};
-
 struct RenderScene {
   Box3f basin;                                                       ///< m
   std::array<bool, 6> is_wall{true, true, true, false, true, true};  ///< x_min x_max y_min y_max z_min z_max
   std::vector<RenderObject> objects;
-  RenderCamera camera;
-  RenderLight light;
-  RenderStage stage;
+  model::Camera camera;
+  model::Light light;
+  model::SceneProps stage;
   /// m: a clear mesh that ends this near to a clear object of a higher priority is drawn as
   /// touching it. 0: as it is.
   float wetting = 0;

@@ -38,15 +38,15 @@ struct Gloss {
   bool coat = true;
 };
 
-Gloss gloss_of(const RenderLook& look) {
-  if (const auto* metal = std::get_if<MetalLook>(&look)) return {metal->roughness, false};
-  if (const auto* wood = std::get_if<WoodLook>(&look)) return {wood->roughness, true};
-  return {std::get<PlasticLook>(look).roughness, true};
+Gloss gloss_of(const Look& look) {
+  if (const auto* metal = std::get_if<Metal>(&look)) return {metal->roughness, false};
+  if (const auto* wood = std::get_if<Wood>(&look)) return {wood->roughness, true};
+  return {std::get<Plastic>(look).roughness, true};
 }
 
 }  // namespace
 
-RoughSurface::RoughSurface(const RenderLook& look, float outer_ior) {
+RoughSurface::RoughSurface(const Look& look, float outer_ior) {
   const Gloss gloss = gloss_of(look);
   has_base_ = gloss.coat;
   alpha_ = std::max(1e-3f, gloss.roughness * gloss.roughness);
@@ -130,9 +130,9 @@ Vec3f RoughSurface::scattered(const Vec3f& view, const Vec3f& light, const Vec3f
 }
 
 RoughSurfaces::RoughSurfaces(const Geometry& geometry) : media_(geometry.objects() + 1) {
-  const auto dielectric = [&](int o) { return std::get_if<DielectricLook>(&geometry.look(o)); };
+  const auto dielectric = [&](int o) { return std::get_if<Dielectric>(&geometry.look(o)); };
   for (int o = 0; o < geometry.objects(); ++o) {
-    const bool smooth = dielectric(o) != nullptr || std::holds_alternative<OpaqueLook>(geometry.look(o));
+    const bool smooth = dielectric(o) != nullptr || std::holds_alternative<Opaque>(geometry.look(o));
     for (int m = air; m < geometry.objects(); ++m) {
       const bool possible = !smooth && (m == air || dielectric(m) != nullptr);
       index_.push_back(possible ? static_cast<int>(surfaces_.size()) : -1);

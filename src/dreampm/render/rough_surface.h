@@ -14,7 +14,7 @@ namespace dreampm::trace {
 class RoughSurface {
  public:
   /// Of wood, metal or plastic. `outer_ior`: of what it lies in, 1 in air.
-  RoughSurface(const RenderLook& look, float outer_ior);
+  RoughSurface(const Look& look, float outer_ior);
 
   /// A lobe: what its samples are worth, and the share of light that it sends back in all.
   struct Sample {

@@ -29,15 +29,17 @@ std::pair<float, float> clouds(const Vec3f& d) {
 
 }  // namespace
 
-Sky::Sky(const RenderLight& light, bool physical) : kind_(light.sky), has_sun_(light.sun_strength > 0) {
-  const float elevation = light.sun_elevation * degree, azimuth = light.sun_azimuth * degree;
+Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {
+  const auto strength = static_cast<float>(light.sun.strength);
+  const float elevation = static_cast<float>(light.sun.elevation) * degree,
+              azimuth = static_cast<float>(light.sun.azimuth) * degree;
   sun_ = {std::cos(elevation) * std::cos(azimuth), std::sin(elevation), std::cos(elevation) * std::sin(azimuth)};
-  sun_irradiance_ = sun_color * light.sun_strength;
-  disc_angle_ = light.sun_angle * degree;
+  sun_irradiance_ = sun_color * strength;
+  disc_angle_ = static_cast<float>(light.sun.angle) * degree;
   disc_cos_ = std::cos((physical ? 1.0f : 1.25f) * disc_angle_);
   shadow_tan_ = std::tan(disc_angle_ * (physical ? 1.0f : soft_shadow));
   const float solid_angle = 2 * pi * (1 - std::cos(disc_angle_));
-  disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_color * (soft_disc * light.sun_strength / 8);
+  disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_color * (soft_disc * strength / 8);
   if (physical) disc_angle_ = -disc_angle_;  // a hard edge
   if (kind_ != SkyKind::uniform) {
     table_.resize(static_cast<std::size_t>(columns) * rows);

@@ -10,7 +10,7 @@ class Sky {
  public:
   /// `physical` gives the disc its true radiance; else it is dimmed to what the tone curve can
   /// show.
-  Sky(const RenderLight& light, bool physical);
+  Sky(const model::Light& light, bool physical);
   /// Radiance from direction d (unit length).
   Vec3f radiance(const Vec3f& d, bool with_sun) const;
   /// Irradiance of open, level ground by the sky alone.

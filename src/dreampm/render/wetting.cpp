@@ -104,7 +104,7 @@ class Walls {
   std::vector<const TriMesh*> meshes_;
 };
 
-bool is_clear(const RenderObject& o) { return std::holds_alternative<DielectricLook>(o.look); }
+bool is_clear(const RenderObject& o) { return o.look.type == model::LookType::dielectric; }
 
 std::vector<Vec3f> normals_of(const TriMesh& mesh) {
   if (mesh.normals.size() == mesh.vertices.size()) return mesh.normals;

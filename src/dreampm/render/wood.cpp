@@ -29,7 +29,7 @@ float noise(float x, float y, float z) {
 
 }  // namespace
 
-Vec3f wood_color(const WoodLook& look, const TextureFrame& frame, const Vec3f& p, float footprint) {
+Vec3f wood_color(const Wood& look, const TextureFrame& frame, const Vec3f& p, float footprint) {
   const float middle_half =
       std::max(std::min(frame.half.x, frame.half.y), std::min(std::max(frame.half.x, frame.half.y), frame.half.z));
   const float ring = look.ring > 0 ? look.ring : std::max(1e-6f, 2 * middle_half / rings_across);

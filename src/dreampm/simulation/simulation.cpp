@@ -10,7 +10,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/log.h"
 #include "dreampm/base/order.h"
-#include "dreampm/math/srgb.h"
+#include "dreampm/math/look_color.h"
 #include "dreampm/pictures/draw.h"
 #include "dreampm/pictures/frames.h"
 #include "dreampm/scene/emit.h"
@@ -219,16 +219,6 @@ std::size_t Simulation::particle_count(std::string_view material) const {
   return impl_->with_engine([&](auto& engine) { return engine.world().sets[m].size(); });
 }
 
-namespace {
-
-/// Linear: the color of a look, or of clear matter what a layer of it lets through.
-Vec3f color_of(const model::Look& look) {
-  if (look.type != model::LookType::dielectric) return linear_color(look.color);
-  return light_through(look.absorption);
-}
-
-}  // namespace
-
 std::shared_ptr<const Simulation::Impl::View> Simulation::Impl::view(std::size_t m) const {
   auto made = std::make_shared<View>();
   View& view = *made;
@@ -240,7 +230,7 @@ std::shared_ptr<const Simulation::Impl::View> Simulation::Impl::view(std::size_t
     std::vector<Vec3f> position(n);
     particles.for_each([&](std::size_t p, const Vec3d& x) { position[p] = static_cast<Vec3f>(x); });
     view.id.resize(n), view.position.resize(n), view.velocity.resize(n), view.J.resize(n);
-    view.color.assign(n, color_of(state.scene.model().render.looks.at(engine.world().sets[m].name)));
+    view.color.assign(n, linear_color(state.scene.model().render.looks.at(engine.world().sets[m].name)));
     std::size_t i = 0;
     for (const std::uint32_t p : order_of(particles.ids())) {
       view.id[i] = particles.id(p);
