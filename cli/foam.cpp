@@ -24,8 +24,8 @@ int foam(const FoamArguments& a) {
 
 void add_foam(CLI::App& app, Action& action) {
   auto a = std::make_shared<FoamArguments>();
-  CLI::App* verb = add_verb(app, "foam", "Make spray, foam, bubbles and dust of a run's frames",
-                            "dreampm foam out/foaming-dam");
+  CLI::App* verb =
+      add_verb(app, "foam", "Make spray, foam, bubbles and dust of a run's frames", "dreampm foam out/foaming-dam");
   verb->add_option("DIR", a->folder, "a run's folder, whose scene has foam")->required();
   verb->add_option("--frames", a->frames, "A-B: only these frames, of which the one before the first has foam");
   add_threads(*verb, a->threads);

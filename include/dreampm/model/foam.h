@@ -18,7 +18,7 @@ struct FoamLimits {
 
 /// A cause of foam.
 struct FoamSource {
-  double share = 1;      ///< of Foam::rate that it can give; 0: none
+  double share = 1;  ///< of Foam::rate that it can give; 0: none
   FoamLimits limits{};
   bool operator==(const FoamSource&) const = default;
 };
@@ -26,12 +26,12 @@ struct FoamSource {
 /// How much foam there is, where it comes from, and how it moves and fades. The limits are, with
 /// their units: speed m/s; trapped_air and vorticity m/s over `scale`; crest 1/m.
 struct Foam {
-  double amount = 1;                  ///< times everything that is emitted; 0 or more
-  std::vector<std::string> of;        ///< names of materials; empty: every liquid, snow and sand
-  std::optional<double> rate;         ///< 1/(m^3 s) of a cause at its upper limit; absent: 1000 a second in scale^3
-  std::optional<double> scale;        ///< m, over which motion is compared; absent: by the volume of the matter
-  std::optional<double> radius;       ///< m, of the mean; absent: a 24th of the scale
-  FoamLimits speed;                   ///< m/s: below, nothing is emitted whatever the cause
+  double amount = 1;             ///< times everything that is emitted; 0 or more
+  std::vector<std::string> of;   ///< names of materials; empty: every liquid, snow and sand
+  std::optional<double> rate;    ///< 1/(m^3 s) of a cause at its upper limit; absent: 5000 a second in scale^3
+  std::optional<double> scale;   ///< m, over which motion is compared; absent: by the volume of the matter
+  std::optional<double> radius;  ///< m, of the mean; absent: a 20th of the scale
+  FoamLimits speed;              ///< m/s: below, nothing is emitted whatever the cause
   FoamSource trapped_air, crest, vorticity{0.3, {}};
   int most = 2000000;                 ///< at once
   double life_min = 2, life_max = 5;  ///< s, of foam on the surface

@@ -116,10 +116,11 @@ Born births(const FoamMatter& from, const FoamMatter& to, std::span<const std::i
     }
     for (std::uint32_t c = first[i]; c < first[i + 1]; ++c) {
       const float pick = static_cast<float>(uniform(lot_of(i), 2 + (c - first[i]))) * rates[i].sum();
-      causes[c] = pick < rates[i].crest                           ? Cause::crest
+      causes[c] = pick < rates[i].crest                          ? Cause::crest
                   : pick < rates[i].crest + rates[i].trapped_air ? Cause::trapped_air
                                                                  : Cause::vorticity;
-      out.all[c] = child(piece, causes[c], Lot(lot_of(i), c - first[i]), static_cast<std::int32_t>(next_id + c), between);
+      out.all[c] =
+          child(piece, causes[c], Lot(lot_of(i), c - first[i]), static_cast<std::int32_t>(next_id + c), between);
     }
   });
   for (std::size_t c = 0; c < out.all.size(); ++c) {

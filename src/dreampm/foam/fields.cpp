@@ -6,10 +6,14 @@ namespace {
 /// Below this share of space there is nothing to take a velocity from.
 constexpr float least_fill = 0.02f;
 
+/// At half a cell from a wall the velocities of matter and image go with their ways by 0.4.
+constexpr float parting = 2.5f;
+
 /// The share of a node's cell that obstacles take.
 float blocked_at(std::span<const Obstacle> obstacles, const Vec3f& p, float cell) {
   float share = 0;
-  for (const Obstacle& o : obstacles) share = std::max(share, std::clamp(0.5f - o.distance(p, cell) / cell, 0.0f, 1.0f));
+  for (const Obstacle& o : obstacles)
+    share = std::max(share, std::clamp(0.5f - o.distance(p, cell) / cell, 0.0f, 1.0f));
   return share;
 }
 
@@ -31,7 +35,8 @@ MotionField::MotionField(const FoamMatter& matter, std::span<const Obstacle> obs
       const float m = brick[0][n];
       if (!(m > 0)) continue;
       for (std::size_t k = 1; k < 4; ++k) brick[k][n] /= m;
-      if (!obstacles.empty()) brick[4][n] = blocked_at(obstacles, field_.place(field_.node(b, static_cast<int>(n))), cell_);
+      if (!obstacles.empty())
+        brick[4][n] = blocked_at(obstacles, field_.place(field_.node(b, static_cast<int>(n))), cell_);
     }
   });
 }
@@ -94,11 +99,12 @@ bool WayField::at(const Vec3f& p, Vec3f& way) const {
 Measures::Measures(const FoamMatter& matter, std::span<const Obstacle> obstacles, const FoamRules& rules)
     : field_(node_axes(rules.room, rules.scale)), scale_(rules.scale) {
   const float share = per_cell(field_.axes());
-  field_.scatter(matter.position, [&](std::uint32_t i, const Vec3f& sign, const Vec3f& r, std::array<float, count>& to) {
-    const float m = volume_of(matter, i, rules.spacing) * share;
-    const Vec3f v = matter.velocity[i] * sign;
-    to = {m, m * v.x, m * v.y, m * v.z, m * dot(v, v), m * dot(v, r), m * r.x, m * r.y, m * r.z, m * dot(r, r), 0};
-  });
+  field_.scatter(
+      matter.position, [&](std::uint32_t i, const Vec3f& sign, const Vec3f& r, std::array<float, count>& to) {
+        const float m = volume_of(matter, i, rules.spacing) * share;
+        const Vec3f v = matter.velocity[i] * sign;
+        to = {m, m * v.x, m * v.y, m * v.z, m * dot(v, v), m * dot(v, r), m * r.x, m * r.y, m * r.z, m * dot(r, r), 0};
+      });
   average();
   meet(obstacles);
   differentiate();
@@ -106,7 +112,8 @@ Measures::Measures(const FoamMatter& matter, std::span<const Obstacle> obstacles
 }
 
 /// Means, and how matter meets: of two particles |v| - v.x/|x| (Ihmsen 2012, eq. 2), with v and x
-/// their differences; here by the moments of all that a node sees.
+/// their differences; here by the moments of all that a node sees. The way apart counts `parting`
+/// times, so that matter that parts along one axis, as from a wall, traps nothing.
 void Measures::average() {
   parallel_for(field_.bricks(), 8, [&](std::size_t b) {
     auto& c = field_.brick(b);
@@ -121,7 +128,7 @@ void Measures::average() {
       const float reach = std::sqrt(std::max(0.0f, r2 / m - dot(r, r)));
       // From a part of a cell on: less is a drop, which meets nothing.
       if (reach > 0.1f * scale_ && m > 0.05f)
-        c[meeting][n] = std::sqrt(2.0f) * std::max(0.0f, spread - (vr / m - dot(v, r)) / reach);
+        c[meeting][n] = std::sqrt(2.0f) * std::max(0.0f, spread - parting * (vr / m - dot(v, r)) / reach);
       c[taken][n] = m;
     }
   });

@@ -44,12 +44,12 @@ class Measures {
  public:
   Measures(const FoamMatter& matter, std::span<const Obstacle> obstacles, const FoamRules& rules);
   struct At {
-    float fill = 0;         ///< of matter alone
-    float near_surface = 0; ///< 0 inside of matter, 1 at its surface
-    float trapped_air = 0;  ///< m/s: how matter meets and whirls
-    float curvature = 0;    ///< 1/m: of the surface, where it is bent outward
-    float vorticity = 0;    ///< m/s: times the scale
-    Vec3f outward{};        ///< the surface's normal, unit length
+    float fill = 0;          ///< of matter alone
+    float near_surface = 0;  ///< 0 inside of matter, 1 at its surface
+    float trapped_air = 0;   ///< m/s: how matter meets and whirls
+    float curvature = 0;     ///< 1/m: of the surface, where it is bent outward
+    float vorticity = 0;     ///< m/s: times the scale
+    Vec3f outward{};         ///< the surface's normal, unit length
   };
   At at(const Vec3f& p) const;
 

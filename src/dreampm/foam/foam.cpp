@@ -59,8 +59,8 @@ FoamStep advance_foam(const FoamParticles& before, const FoamMatter& from, const
   std::vector<One> moved(before.size());
   std::vector<End> ends(before.size());
   parallel_for(before.size(), 64, [&](std::size_t i) {
-    moved[i] = {before.position[i], before.velocity[i], before.type[i], before.age[i], before.life[i],
-                full_radius(before.id[i], rules)};
+    moved[i] = {before.position[i], before.velocity[i], before.type[i],
+                before.age[i],      before.life[i],     full_radius(before.id[i], rules)};
     ends[i] = move(moved[i], dt, between);
   });
   FoamStep out;

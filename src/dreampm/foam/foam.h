@@ -21,14 +21,14 @@ inline constexpr std::array<std::string_view, 4> foam_type_names{"spray", "foam"
 /// A column each; all have size() rows. It is the whole state: the next one follows from it and
 /// from the matter of two frames.
 struct FoamParticles {
-  std::vector<Vec3f> position;     ///< m
-  std::vector<Vec3f> velocity;     ///< m/s
+  std::vector<Vec3f> position;  ///< m
+  std::vector<Vec3f> velocity;  ///< m/s
   std::vector<FoamType> type;
-  std::vector<float> age;          ///< s since birth
-  std::vector<float> life;         ///< s that are left; only what ages loses them
-  std::vector<float> radius;       ///< m, grown and faded
-  std::vector<std::int32_t> id;    ///< rising; stays with a particle
-  std::uint32_t next_id = 0;       ///< of the next one that is born
+  std::vector<float> age;        ///< s since birth
+  std::vector<float> life;       ///< s that are left; only what ages loses them
+  std::vector<float> radius;     ///< m, grown and faded
+  std::vector<std::int32_t> id;  ///< rising; stays with a particle
+  std::uint32_t next_id = 0;     ///< of the next one that is born
 
   std::size_t size() const { return position.size(); }
 };
@@ -53,18 +53,18 @@ struct FoamRules {
   foam::Room room;
   Vec3f gravity{0, -9.81f, 0};  ///< m/s^2
   float spacing = 0.01f;        ///< m, of the matter: a particle has spacing^3 at rest
-  float cell = 0.02f;           ///< m, of the grid that tells where matter is and carries foam
+  float cell = 0.02f;           ///< m, of the grid that holds where matter is and carries foam
   float scale = 0.02f;          ///< m, over which motion is compared; at least a cell
   float rate = 0;               ///< 1/(m^3 s), with the amount in it
   FoamCause speed, trapped_air, crest, vorticity;
-  float radius = 1e-3f;         ///< m, the mean
+  float radius = 1e-3f;                                        ///< m, the mean
   float life_min = 2, life_max = 5, grow = 0.1f, fade = 0.5f;  ///< s
-  float rise = -1;              ///< m/s of bubbles; below 0: by radius
+  float rise = -1;                                             ///< m/s of bubbles; below 0: by radius
   float drag = 1;
   std::size_t most = 2000000;
   std::uint64_t seed = 1;
-  bool dust = false;            ///< the matter gives dust, not foam
-  Vec3d shift{};                ///< m, from which places count
+  bool dust = false;  ///< the matter gives dust, not foam
+  Vec3d shift{};      ///< m, from which places count
 };
 
 /// The slowest wave on water [m/s], with gravity and surface tension: (4 g sigma/rho)^(1/4) (Lamb,
@@ -74,8 +74,8 @@ float slowest_wave(float gravity);
 /// What of a frame decides limits: of the matter that moves, the values that one in a hundred is
 /// above.
 struct FoamMaxima {
-  std::uint64_t moving = 0;  ///< particles faster than the slowest wave twice over
-  float speed = 0;           ///< m/s
+  std::uint64_t moving = 0;                         ///< particles faster than the slowest wave twice over
+  float speed = 0;                                  ///< m/s
   float trapped_air = 0, crest = 0, vorticity = 0;  ///< m/s, 1/m, m/s
 };
 FoamMaxima foam_maxima(const FoamMatter& matter, std::span<const foam::Obstacle> obstacles, const FoamRules& rules);

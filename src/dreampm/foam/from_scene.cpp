@@ -5,9 +5,9 @@
 namespace dreampm {
 namespace {
 
-constexpr double scales_along = 16;    ///< of the side of a cube of all matter
-constexpr double in_a_scale = 1000;    ///< 1/s in its cube, of a cause at its upper limit
-constexpr double radii_in_scale = 24;
+constexpr double scales_along = 16;  ///< of the side of a cube of all matter
+constexpr double in_a_scale = 5000;  ///< 1/s in its cube, of a cause at its upper limit
+constexpr double radii_in_scale = 20;
 
 FoamCause cause(const FoamCause& found, float share, const model::FoamLimits& given) {
   FoamCause c{share, given.from ? static_cast<float>(*given.from) : found.from,

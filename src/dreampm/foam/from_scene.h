@@ -5,9 +5,9 @@
 
 namespace dreampm {
 
-/// The rules of `foam` for matter on a grid of cells of `rules.cell`, of which there are at most `volume` [m^3]:
-/// fills in scale, rate, radius, life and what else does not hang on limits. `rules` has room,
-/// gravity, spacing, cell, seed and shift.
+/// The rules of `foam` for matter on a grid of cells of `rules.cell`, of which there are at most
+/// `volume` [m^3]: fills in scale, rate, radius, life and what else does not hang on limits.
+/// `rules` has room, gravity, spacing, cell, seed and shift.
 FoamRules foam_rules(const model::Foam& foam, FoamRules rules, double volume);
 /// The same of a scene. `shift`: where places of the matter count from.
 FoamRules foam_rules(const model::Scene& scene, bool dust, const Vec3d& shift, double volume);

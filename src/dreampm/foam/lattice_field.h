@@ -17,9 +17,9 @@ namespace dreampm::foam {
 
 /// The box that matter is in.
 struct Room {
-  Box3f box{};                                             ///< m
-  std::array<bool, 6> is_wall{};                           ///< x_min, x_max, y_min, y_max, z_min, z_max
-  std::array<bool, 3> periodic{};                          ///< axes whose ends meet
+  Box3f box{};                     ///< m
+  std::array<bool, 6> is_wall{};   ///< x_min, x_max, y_min, y_max, z_min, z_max
+  std::array<bool, 3> periodic{};  ///< axes whose ends meet
   bool wall(int axis, bool high) const { return is_wall[static_cast<std::size_t>(2 * axis + (high ? 1 : 0))]; }
   /// `p` where a periodic axis has it between its ends.
   Vec3f wrapped(Vec3f p) const;
@@ -98,7 +98,8 @@ class LatticeField {
   }
   float value(const Vec3i& node, int k) const {
     float v = 0;
-    at(node, [&](const Brick& b, int n, const Vec3f&) { v = b[static_cast<std::size_t>(k)][static_cast<std::size_t>(n)]; });
+    at(node,
+       [&](const Brick& b, int n, const Vec3f&) { v = b[static_cast<std::size_t>(k)][static_cast<std::size_t>(n)]; });
     return v;
   }
   /// Calls visit(brick, n, sign, weight) for the eight nodes about p, as trilinear interpolation
@@ -214,8 +215,7 @@ void LatticeField<K>::scatter(std::span<const Vec3f> points, const Give& give) {
   open(order);
   std::vector<Arena> arenas(order.bricks.size());
   surface::LatticeMap arena_of(order.bricks.size());
-  for (std::size_t b = 0; b < order.bricks.size(); ++b)
-    arena_of.insert(order.bricks[b], static_cast<std::int32_t>(b));
+  for (std::size_t b = 0; b < order.bricks.size(); ++b) arena_of.insert(order.bricks[b], static_cast<std::int32_t>(b));
   parallel_for(arenas.size(), 4, [&](std::size_t b) {
     for (auto& values : arenas[b]) values.fill(0);
     for (std::uint32_t i = order.first[b]; i < order.first[b + 1]; ++i)

@@ -25,9 +25,8 @@ FoamMaxima foam_maxima(const FoamMatter& matter, std::span<const Obstacle> obsta
   FoamMaxima out;
   const float slow = 2 * slowest_wave(std::max(1.0f, length(rules.gravity)));
   const std::size_t n = matter.position.size();
-  out.moving = parallel_reduce(n, std::uint64_t{0}, [&](std::uint64_t& sum, std::size_t i) {
-    sum += length(matter.velocity[i]) > slow;
-  });
+  out.moving = parallel_reduce(n, std::uint64_t{0},
+                               [&](std::uint64_t& sum, std::size_t i) { sum += length(matter.velocity[i]) > slow; });
   if (out.moving == 0) return out;
   const Measures measures(matter, obstacles, rules);
   std::vector<Causes> causes(n);

@@ -203,7 +203,8 @@ float drawn_radius(const One& one, const FoamRules& rules) {
 }
 
 float full_radius(std::int32_t id, const FoamRules& rules) {
-  return rules.radius * (0.5f + static_cast<float>(uniform(rules.seed ^ 0x666f616dull, static_cast<std::uint64_t>(id))));
+  return rules.radius *
+         (0.5f + static_cast<float>(uniform(rules.seed ^ 0x666f616dull, static_cast<std::uint64_t>(id))));
 }
 
 }  // namespace dreampm::foam

@@ -27,9 +27,9 @@ enum class End : std::uint8_t { none, aged, wall, outside };
 /// and Weber, "Bubbles, Drops, and Particles", 1978, eq. 7-3); of smaller ones than a radius of
 /// 0.65 mm that of these.
 float bubble_speed(float radius, float gravity);
-/// 1/m: a drop's deceleration by air is this times its speed squared. By Schiller and Naumann (1933)
-/// for a sphere up to Re 1000, 0.44 beyond. Of larger drops than a radius of 2.5 mm, which burst,
-/// that of these.
+/// 1/m: a drop's deceleration by air is this times its speed squared. By Schiller and Naumann
+/// (1933) for a sphere up to Re 1000, 0.44 beyond. Of larger drops than a radius of 2.5 mm, which
+/// burst, that of these.
 float drop_drag(float radius, float speed);
 
 /// Moves it on for `dt` [s], at most between.dt, to the later frame.

@@ -12,9 +12,9 @@ namespace dreampm::foam {
 struct Obstacle {
   std::shared_ptr<const Region> shape;  ///< as the scene gives it
   Pose pose{}, before{};
-  Vec3d shift{};     ///< m: places here count from it
-  double dt = 0;     ///< s between the poses; 0: it stands
-  Box3d bounds{};    ///< m, of the shape
+  Vec3d shift{};   ///< m: places here count from it
+  double dt = 0;   ///< s between the poses; 0: it stands
+  Box3d bounds{};  ///< m, of the shape
 
   /// Signed distance [m], negative inside; far where p is more than `reach` away from the bounds.
   float distance(const Vec3f& p, float reach) const {

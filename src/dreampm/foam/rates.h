@@ -34,7 +34,9 @@ inline Rates rates_of(const Causes& c, const FoamRules& rules) {
   // Energies, not speeds, rise evenly.
   const FoamCause& s = rules.speed;
   const float energy = std::clamp((c.speed * c.speed - s.from * s.from) / (s.to * s.to - s.from * s.from), 0.0f, 1.0f);
-  const auto rate = [&](const FoamCause& cause, float value) { return rules.rate * energy * cause.share * cause.part(value); };
+  const auto rate = [&](const FoamCause& cause, float value) {
+    return rules.rate * energy * cause.share * cause.part(value);
+  };
   return {rate(rules.crest, c.crest), rate(rules.trapped_air, c.trapped_air), rate(rules.vorticity, c.vorticity)};
 }
 

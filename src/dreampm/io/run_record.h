@@ -42,11 +42,11 @@ struct VolumeRecord {
 /// What became of foam in a frame.
 struct FoamRecord {
   int frame = 1;
-  std::uint64_t crest = 0, trapped_air = 0, vorticity = 0;  ///< emitted since the frame before, by cause
-  std::uint64_t beside_walls = 0;                           ///< of them, within a scale of a wall or collider
-  Vec3d place{};                                            ///< m, the mean of where they were emitted
-  std::uint64_t aged = 0, at_walls = 0, outside = 0;        ///< ended since, by what ended them
-  std::uint64_t thinned = 0;                                ///< not emitted, for the bound on how many there are
+  std::uint64_t crest = 0, trapped_air = 0, vorticity = 0;   ///< emitted since the frame before, by cause
+  std::uint64_t beside_walls = 0;                            ///< of them, within a scale of a wall or collider
+  Vec3d place{};                                             ///< m, the mean of where they were emitted
+  std::uint64_t aged = 0, at_walls = 0, outside = 0;         ///< ended since, by what ended them
+  std::uint64_t thinned = 0;                                 ///< not emitted, for the bound on how many there are
   std::uint64_t spray = 0, foam = 0, bubbles = 0, dust = 0;  ///< there now
   std::uint64_t emitted() const { return crest + trapped_air + vorticity; }
 };

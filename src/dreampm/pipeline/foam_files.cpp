@@ -76,7 +76,8 @@ FoamFrame read_foam(const fs::path& path) {
       fail_input("{}: place or velocity of particle {} is not finite", file, i);
     const auto number = whole<std::int32_t>(values[id]);
     const auto kind = whole<std::uint8_t>(values[type]);
-    if (!number || *number < 0) fail_input("{}: id of particle {} is {}: a whole number, not negative", file, i, values[id]);
+    if (!number || *number < 0)
+      fail_input("{}: id of particle {} is {}: a whole number, not negative", file, i, values[id]);
     if (!kind || *kind >= foam_type_names.size())
       fail_input("{}: type of particle {} is {}: 0 to {} are known", file, i, values[type], foam_type_names.size() - 1);
     foam.id.push_back(*number), foam.type.push_back(static_cast<FoamType>(*kind));

@@ -82,8 +82,8 @@ class MaximaTable {
       FoamMaxima m;
       char comma = 0;
       // A row that cannot be read is found again.
-      if (std::getline(row, key, ',') && row >> m.moving >> comma >> m.speed >> comma >> m.trapped_air >> comma >>
-                                             m.crest >> comma >> m.vorticity)
+      if (std::getline(row, key, ',') &&
+          row >> m.moving >> comma >> m.speed >> comma >> m.trapped_air >> comma >> m.crest >> comma >> m.vorticity)
         rows_[key] = m;
     }
   }
@@ -115,11 +115,14 @@ double most_volume(const RunFolder& run, const std::vector<int>& frames, const s
          std::pow(run.scene.space.spacing, 3);
 }
 
+/// Raised where the measures of foam/fields.h change: what was found by others is found again.
+constexpr int measures_version = 1;
+
 std::string key_of(const RunFolder& run, int frame, const FoamingKind& kind) {
   Hash64 hash;
   hash.add(std::string_view(run.record.scene_hash)), hash.add(std::string_view(run.state_hash(frame)));
   for (const int m : kind.materials) hash.add(m);
-  hash.add(kind.rules.scale);
+  hash.add(kind.rules.scale), hash.add(measures_version);
   return hash.hex();
 }
 
@@ -168,7 +171,8 @@ std::vector<FoamingKind> foaming_kinds(RunFolder& run, const FoamObstacles& obst
         } else {
           progress.update(done);
           const FoamingMatter matter = foaming_matter(run, f, kind.materials);
-          table.enter(key, foam_maxima(matter.view(), obstacles.at(run.frame_record(f), run.frame_record(f)), kind.rules));
+          table.enter(key,
+                      foam_maxima(matter.view(), obstacles.at(run.frame_record(f), run.frame_record(f)), kind.rules));
           if (++made % 20 == 0) table.save();
         }
         maxima.push_back(*table.find(key));

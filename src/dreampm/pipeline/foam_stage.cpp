@@ -36,9 +36,8 @@ FoamRecord record_of(const FoamStep& step, int frame, const Vec3d& shift) {
 void enter(RunFolder& run, const FoamRecord& r) {
   auto& list = run.record.stages["foam"].foam;
   std::erase_if(list, [&](const FoamRecord& o) { return o.frame == r.frame; });
-  list.insert(std::upper_bound(list.begin(), list.end(), r,
-                               [](const auto& a, const auto& b) { return a.frame < b.frame; }),
-              r);
+  list.insert(
+      std::upper_bound(list.begin(), list.end(), r, [](const auto& a, const auto& b) { return a.frame < b.frame; }), r);
 }
 
 FoamCounts& operator+=(FoamCounts& a, const FoamCounts& b) {
@@ -108,10 +107,9 @@ void say_memory(const RunFolder& run, const std::vector<FoamingKind>& kinds) {
   std::uint64_t particles = 0;
   for (const FrameRecord& f : run.record.frames) particles = std::max(particles, f.particles);
   constexpr double a_particle = 300, a_foam = 140;  // bytes: two frames and the fields of both; two states
-  const double bytes =
-      a_particle * static_cast<double>(particles) + a_foam * static_cast<double>(run.scene.foam->most);
+  const double bytes = a_particle * static_cast<double>(particles) + a_foam * static_cast<double>(run.scene.foam->most);
   for (const FoamingKind& k : kinds)
-    info("foam: {} of scale {:.3g} m, {:.3g} per m^3 and s at the limits, radius {:.3g} mm", k.rules.dust ? "dust" : "foam",
+    info("foam: {}scale {:.3g} m, {:.3g} per m^3 and s at the limits, radius {:.3g} mm", k.rules.dust ? "dust: " : "",
          k.rules.scale, k.rules.rate, 1e3f * k.rules.radius);
   info("foam: takes at most {:.0f} MB, with foam.most at {}", bytes / 1e6, run.scene.foam->most);
 }

@@ -36,8 +36,8 @@ struct Plastic {
 };
 using Look = std::variant<Dielectric, Opaque, Wood, Metal, Plastic>;
 
-/// As the look's type says; spheres are opaque, without a coat. A dielectric glows as its absorption
-/// asks; a clear one does not.
+/// As the look's type says; spheres are opaque, without a coat. A dielectric glows as its
+/// absorption asks; a clear one does not.
 Look traced(const model::Look& look);
 
 }  // namespace dreampm::trace

@@ -19,7 +19,7 @@ enum class Part {
   simulation,  ///< what decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files they
                ///< name
   particles,   ///< and which attributes are written, and the probes
-  foam,  ///< of the foam alone
+  foam,        ///< of the foam alone
   surface,
   render,
   video

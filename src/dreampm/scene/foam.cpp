@@ -1,8 +1,8 @@
 // foam: spray, foam, bubbles and dust.
 #include "dreampm/scene/foam.h"
 
-#include "dreampm/physics/param.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/physics/param.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
@@ -22,8 +22,8 @@ Schema<FoamLimits> limits_schema(const char* unit) {
 /// Reports limits of which the upper one is not above the lower one.
 void check_limits(Reading& in, const YamlNode& n, const std::string& path, const FoamLimits& limits) {
   if (limits.from && limits.to && !(*limits.to > *limits.from))
-    in.problems.error(n.find("to")->at, fmt::format("{0}.to is {1}: must be above {0}.from, {2}", path, *limits.to,
-                                                    *limits.from));
+    in.problems.error(n.find("to")->at,
+                      fmt::format("{0}.to is {1}: must be above {0}.from, {2}", path, *limits.to, *limits.from));
 }
 
 Field<Foam> limits(std::string key, FoamLimits Foam::* member, const char* unit) {
@@ -46,9 +46,7 @@ Schema<FoamSource> source_schema(const char* unit) {
     of.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, FoamSource& out) {
       read(in, n, path, out.limits);
     };
-    of.write = [write = f.write](const FoamSource& s, const std::string& k, YamlNode& map) {
-      write(s.limits, k, map);
-    };
+    of.write = [write = f.write](const FoamSource& s, const std::string& k, YamlNode& map) { write(s.limits, k, map); };
     of.value = f.value, of.meaning = f.meaning;
     schema.push_back(std::move(of));
   }
@@ -70,26 +68,25 @@ Field<Foam> source(std::string key, FoamSource Foam::* member, const char* unit)
 /// life: [shortest, longest]
 Field<Foam> life() {
   const Range range = between(0.01, 1e6, "s");
-  return Field<Foam>{"life",
-                     [range](Reading& in, const YamlNode& n, const std::string& path, Foam& out) {
-                       if (n.kind != YamlNode::Kind::list || n.items.size() != 2)
-                         return in.problems.error(
-                             n.at, fmt::format("{} is {}: must be a list of 2 numbers, [shortest, longest]", path,
-                                               n.kind == YamlNode::Kind::list
-                                                   ? fmt::format("a list of {}", n.items.size())
-                                                   : n.describe()));
-                       const auto least = read_number(in.problems, n.items[0], path + "[0]", range);
-                       const auto most = read_number(in.problems, n.items[1], path + "[1]", range);
-                       if (!least || !most) return;
-                       if (*most < *least)
-                         return in.problems.error(
-                             n.items[1].at, fmt::format("{0}[1] is {1}: must not be below {0}[0], {2}", path, *most,
-                                                        *least));
-                       out.life_min = *least, out.life_max = *most;
-                     },
-                     [](const Foam& f, const std::string& k, YamlNode& map) {
-                       map.put(k, YamlNode::list({write_number(f.life_min), write_number(f.life_max)}));
-                     }}
+  return Field<Foam>{
+      "life",
+      [range](Reading& in, const YamlNode& n, const std::string& path, Foam& out) {
+        if (n.kind != YamlNode::Kind::list || n.items.size() != 2)
+          return in.problems.error(
+              n.at,
+              fmt::format("{} is {}: must be a list of 2 numbers, [shortest, longest]", path,
+                          n.kind == YamlNode::Kind::list ? fmt::format("a list of {}", n.items.size()) : n.describe()));
+        const auto least = read_number(in.problems, n.items[0], path + "[0]", range);
+        const auto most = read_number(in.problems, n.items[1], path + "[1]", range);
+        if (!least || !most) return;
+        if (*most < *least)
+          return in.problems.error(n.items[1].at,
+                                   fmt::format("{0}[1] is {1}: must not be below {0}[0], {2}", path, *most, *least));
+        out.life_min = *least, out.life_max = *most;
+      },
+      [](const Foam& f, const std::string& k, YamlNode& map) {
+        map.put(k, YamlNode::list({write_number(f.life_min), write_number(f.life_max)}));
+      }}
       .takes(list_info(number_info(range), 2, 2))
       .says("The shortest and the longest life of foam on the surface; spray and bubbles do not age.");
 }
@@ -103,12 +100,12 @@ const Schema<Foam>& foam_schema() {
           .no_default()
           .says("Which matter foams; absent: every liquid, and `snow` and `sand`, which give dust."),
       number("rate", &Foam::rate, above_zero("1/(m^3 s)"))
-          .says("What a cause emits of a volume at its upper limit; absent: 1000 a second in the cube of `scale`."),
+          .says("What a cause emits of a volume at its upper limit; absent: 5000 a second in the cube of `scale`."),
       number("scale", &Foam::scale, above_zero("m"))
           .says("The length over which motion is compared, at least a cell; absent: a 16th of the side of a cube of "
                 "all foaming matter."),
       number("radius", &Foam::radius, above_zero("m"))
-          .says("The mean radius, from half of which to one and a half of which there are all; absent: a 24th of "
+          .says("The mean radius, from half of which to one and a half of which there are all; absent: a 20th of "
                 "`scale`."),
       limits("speed", &Foam::speed, "m/s").says("How fast matter must be, whatever the cause."),
       source("trapped_air", &Foam::trapped_air, "m/s")
@@ -169,8 +166,9 @@ void check_foam(Reading& in, const YamlNode* foam, const model::Scene& scene) {
         in.problems.error(n.at, fmt::format("foam.of: no material '{}'{}", n.text, suggest(n.text, names)));
       else if (const Material& m = scene.materials[static_cast<std::size_t>(found - names.begin())];
                foam_kind(m) == FoamKind::none)
-        in.problems.error(n.at, fmt::format("foam.of: '{}' is {}, a solid that does not foam: liquids, snow and sand do",
-                                            n.text, m.type));
+        in.problems.error(
+            n.at,
+            fmt::format("foam.of: '{}' is {}, a solid that does not foam: liquids, snow and sand do", n.text, m.type));
     }
   } else if (!scene.materials.empty() && foaming_materials(scene).empty()) {
     in.problems.error(foam->at, "foam: no material foams: liquids, snow and sand do");
