@@ -22,7 +22,8 @@ struct Liquid {
       for (int j = 0; j < n(size.y); ++j)
         for (int i = 0; i < n(size.x); ++i) {
           const float x = off(), y = off(), z = off();
-          position.push_back(Vec3f{static_cast<float>(i) + x, static_cast<float>(j) + y, static_cast<float>(k) + z} * h);
+          position.push_back(Vec3f{static_cast<float>(i) + x, static_cast<float>(j) + y, static_cast<float>(k) + z} *
+                             h);
           velocity.push_back(velocity_at(position.back()));
         }
     id.resize(position.size());

@@ -108,10 +108,9 @@ TEST(Foam, IsPushedByAnObstacleThatMoves) {
   o.bounds = o.shape->bounds();
   o.pose.position = {0.16, level, 0.1}, o.before.position = {0.1, level, 0.1}, o.dt = frame;
   const std::vector<foam::Obstacle> obstacles{o};
-  const FoamParticles one =
-      advance_foam(single(FoamType::spray, {0.22f, 0.45f, 0.1f}), liquid.matter(), liquid.matter(), obstacles, frame, 2,
-                   rules)
-          .particles;
+  const FoamParticles one = advance_foam(single(FoamType::spray, {0.22f, 0.45f, 0.1f}), liquid.matter(),
+                                         liquid.matter(), obstacles, frame, 2, rules)
+                                .particles;
   EXPECT_GE(o.distance(one.position[0], 1), 0);
   EXPECT_GT(one.velocity[0].x, 0.3f);  // of the 1.44 m/s of the ball
 }

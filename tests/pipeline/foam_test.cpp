@@ -7,6 +7,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/host.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/pipeline/export_stage.h"
 #include "dreampm/pipeline/simulate.h"
 #include "dreampm/scene/parse.h"
 #include "thrown.h"
@@ -19,8 +20,8 @@ using testing::HasSubstr;
 class FoamStage : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(DM_BINARY_DIR) / "test-files" / "foam" /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ =
+        fs::path(DM_BINARY_DIR) / "test-files" / "foam" / testing::UnitTest::GetInstance()->current_test_info()->name();
     fs::remove_all(folder_);
     const auto parsed = scene::parse_scene_text(R"(dreampm: 1
 name: dam
@@ -28,7 +29,7 @@ space: {min: [0, 0, 0], max: [0.8, 0.6, 0.24], spacing: 0.03}
 time: {fps: 24, frames: 16, solver: projection}
 materials: {water: {type: newtonian}}
 bodies: {column: {material: water, shape: {box: {min: [0, 0, 0], max: [0.3, 0.45, 0.24]}}}}
-foam: {amount: 0.5}
+foam: {amount: 0.02}
 )",
                                                 "scene.yaml", {});
     ASSERT_TRUE(parsed.ok()) << parsed.text();
@@ -91,14 +92,42 @@ TEST_F(FoamStage, OtherSettingsMakeItAgainWithoutASimulation) {
   const std::string before = bytes(12);
   const fs::path file = folder_ / "scene.yaml";
   std::string text = read_file(file);
-  const std::size_t at = text.find("amount: 0.5");
+  const std::size_t at = text.find("amount: 0.02");
   ASSERT_NE(at, std::string::npos);
-  replace_file_text(file, text.replace(at, 11, "amount: 2"));
+  replace_file_text(file, text.replace(at, 12, "amount: 0.1"));
   EXPECT_THAT(no_foam(open_run(folder_), {12}), HasSubstr("not up to date: the foam settings changed"));
   const StageResult again = make();
   EXPECT_EQ(again.made, 16);
   EXPECT_EQ(again.why, "the foam settings changed");
   EXPECT_GT(bytes(12).size(), 2 * before.size());
+}
+
+TEST_F(FoamStage, IsInEveryExport) {
+  const auto exported = [&](const char* format, const std::string& file) {
+    const HostScope scope(&silent_);
+    ExportOptions options;
+    options.format = format, options.first = options.last = 16, options.what_there_is = true;
+    options.axes.scale = 100;
+    export_run(open_run(folder_), options);
+    return read_file(folder_ / "export" / file);
+  };
+  EXPECT_THAT(exported("usd", "dam.usda"), testing::Not(HasSubstr("\"foam\"")));  // there is none yet
+  make();
+  const FoamParticles foam = read_foam(foam_file(open_run(folder_), 16)).particles;
+  exported("ply", "ply/foam_000016.ply");
+  const ParticleFrame ply = read_particles(folder_ / "export" / "ply" / "foam_000016.ply");
+  ASSERT_EQ(ply.size(), foam.size());
+  EXPECT_NEAR(ply.position[5].y, 100 * foam.position[5].y, 1e-3);  // in centimeters
+  EXPECT_NEAR(ply.columns.at("radius")[5], 100 * foam.radius[5], 1e-5);
+  EXPECT_EQ(ply.columns.at("type")[5], static_cast<float>(foam.type[5]));
+  const std::string usd = exported("usd", "dam.usda");
+  EXPECT_THAT(usd, HasSubstr("def Points \"foam\""));
+  EXPECT_THAT(usd, HasSubstr("float[] widths.timeSamples"));
+  EXPECT_THAT(usd, HasSubstr("primvars:life"));
+  EXPECT_GT(exported("vtkhdf", "dam-foam.vtkhdf").size(), 10 * foam.size());
+  EXPECT_THAT(exported("vdb", "vdb/dam_000016.vdb"), HasSubstr("foam"));
+  EXPECT_THAT(exported("gltf", "gltf/dam_000016.glb"), HasSubstr("_RADIUS"));
+  EXPECT_THAT(exported("obj", "obj/foam_000016.obj"), HasSubstr(fmt::format("p {}", foam.size())));
 }
 
 TEST_F(FoamStage, RefusesParticlesWithoutVelocities) {

@@ -29,8 +29,7 @@ Vec3f dust_color(const model::Scene& scene) {
 FoamGrains foam_grains(const model::Scene& scene, const Vec3d& shift, const FoamParticles& foam,
                        const RenderSettings& settings) {
   const Box3d box{scene.space.min, scene.space.end()};
-  const CameraView view =
-      camera_view(scene.render.camera, box, static_cast<double>(settings.width) / settings.height);
+  const CameraView view = camera_view(scene.render.camera, box, static_cast<double>(settings.width) / settings.height);
   const Vec3f eye = static_cast<Vec3f>(view.eye - shift);
   const auto half_pixel = static_cast<float>(std::tan(view.fov * std::numbers::pi / 360) / settings.height);
   const Vec3f white = linear_color(scene.foam->color), dust = dust_color(scene);

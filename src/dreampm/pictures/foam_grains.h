@@ -10,7 +10,9 @@ namespace dreampm {
 struct FoamGrains {
   std::vector<Vec3f> positions, colors;
   std::vector<float> radii, opacity;
-  RenderObject object() const { return {RenderGrains{positions, radii, opacity, colors}, model::Look::opaque({1, 1, 1}), {}}; }
+  RenderObject object() const {
+    return {RenderGrains{positions, radii, opacity, colors}, model::Look::opaque({1, 1, 1}), {}};
+  }
 };
 
 /// What is smaller than a pixel of that picture is as wide as one, and covers its share of it.
