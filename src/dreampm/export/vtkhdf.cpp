@@ -238,8 +238,8 @@ void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<cons
   out.point_data(what, number.data(), n, 0);
 }
 
-/// FILE where the clip has particles, foam, meshes or objects alone; else FILE-particles, FILE-foam,
-/// FILE-surface and FILE-colliders.
+/// FILE where the clip has particles, foam, meshes or objects alone; else FILE-particles,
+/// FILE-foam, FILE-surface and FILE-colliders.
 std::vector<fs::path> vtkhdf_files(const ClipInfo& clip, const fs::path& file) {
   std::vector<std::string> parts;
   if (clip.particles) parts.emplace_back("particles");
