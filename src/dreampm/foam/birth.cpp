@@ -32,46 +32,6 @@ struct Piece {
   Vec3f velocity(float t) const { return v0 + (v1 - v0) * t; }
 };
 
-Piece piece_of(const FoamMatter& from, const FoamMatter& to, std::span<const std::int32_t> earlier, std::size_t i,
-               const Between& between) {
-  const Vec3f &x = to.position[i], &v = to.velocity[i];
-  if (earlier[i] < 0) return {x - v * between.dt, v, x, v, between.dt};
-  const auto e = static_cast<std::size_t>(earlier[i]);
-  return {x - between.rules.room.way(from.position[e], x), from.velocity[e], x, v, between.dt};
-}
-
-/// The means over the time between the frames, for what plunges in a moment is over by the next
-/// frame: at times a 48th of a second apart, or less.
-std::vector<Rates> mean_rates(const FoamMatter& from, const FoamMatter& to, std::span<const std::int32_t> earlier,
-                              const Between& between) {
-  const FoamRules& rules = between.rules;
-  const std::size_t n = to.position.size();
-  const int times = std::clamp(static_cast<int>(std::ceil(between.dt * 48 - 0.01f)), 1, 8);
-  std::vector<Rates> rates(n);
-  std::vector<Vec3f> position(n), velocity(n);
-  for (int k = 1; k <= times; ++k) {
-    FoamMatter then = to;
-    if (k < times) {
-      const float t = static_cast<float>(k) / static_cast<float>(times);
-      parallel_for(n, 1024, [&](std::size_t i) {
-        const Piece piece = piece_of(from, to, earlier, i, between);
-        position[i] = rules.room.wrapped(piece.place(t)), velocity[i] = piece.velocity(t);
-      });
-      then.position = position, then.velocity = velocity;
-    }
-    const Measures measures(then, between.obstacles, rules);
-    parallel_for(n, 1024, [&](std::size_t i) {
-      const Vec3f& v = then.velocity[i];
-      if (!(length(v) > rules.speed.from)) return;
-      const Rates now = rates_of(causes_of(measures.at(then.position[i]), v), rules);
-      const float share = 1 / static_cast<float>(times);
-      rates[i].crest += share * now.crest, rates[i].trapped_air += share * now.trapped_air;
-      rates[i].vorticity += share * now.vorticity;
-    });
-  }
-  return rates;
-}
-
 enum class Cause { crest, trapped_air, vorticity };
 
 /// One that begins somewhere on the way of its particle, and goes on to the later frame.
@@ -119,9 +79,12 @@ Born births(const FoamMatter& from, const FoamMatter& to, std::span<const std::i
   const std::size_t n = to.position.size();
   const std::uint64_t stream = mix64(rules.seed ^ mix64(static_cast<std::uint64_t>(frame) * 0x9e3779b97f4a7c15ull));
   const auto lot_of = [&](std::size_t i) { return mix64(stream ^ static_cast<std::uint64_t>(to.id[i])); };
-  const std::vector<Rates> rates = mean_rates(from, to, earlier, between);
+  const Measures measures(to, between.obstacles, rules);
+  std::vector<Rates> rates(n);
   std::vector<std::uint32_t> first(n + 1, 0);
   parallel_for(n, 1024, [&](std::size_t i) {
+    if (!(length(to.velocity[i]) > rules.speed.from)) return;
+    rates[i] = rates_of(causes_of(measures.at(to.position[i]), to.velocity[i]), rules);
     const double mean =
         static_cast<double>(rates[i].sum() * volume_of(to, i, rules.spacing)) * static_cast<double>(between.dt);
     first[i + 1] = static_cast<std::uint32_t>(std::min(1e6, mean + uniform(lot_of(i), 0)));
@@ -144,7 +107,13 @@ Born births(const FoamMatter& from, const FoamMatter& to, std::span<const std::i
   std::vector<Cause> causes(first[n]);
   parallel_for(n, 256, [&](std::size_t i) {
     if (first[i] == first[i + 1]) return;
-    const Piece piece = piece_of(from, to, earlier, i, between);
+    Piece piece{to.position[i], to.velocity[i], to.position[i], to.velocity[i], between.dt};
+    if (earlier[i] >= 0) {
+      const auto e = static_cast<std::size_t>(earlier[i]);
+      piece.x0 = to.position[i] - rules.room.way(from.position[e], to.position[i]), piece.v0 = from.velocity[e];
+    } else {
+      piece.x0 = to.position[i] - to.velocity[i] * between.dt;
+    }
     for (std::uint32_t c = first[i]; c < first[i + 1]; ++c) {
       const float pick = static_cast<float>(uniform(lot_of(i), 2 + (c - first[i]))) * rates[i].sum();
       causes[c] = pick < rates[i].crest                          ? Cause::crest
