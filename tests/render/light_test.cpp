@@ -56,7 +56,8 @@ TEST(Furnace, AGrainCoversItsShareAndSendsBackItsAlbedo) {
   const std::vector<float> radius{1};
   for (const float opacity : {1.0f, 0.25f, 0.02f}) {
     const std::vector<float> covers{opacity};
-    const auto scene = before_uniform_sky({RenderGrains{at, radius, covers, color}, model::Look::opaque({1, 1, 1})}, 12);
+    const auto scene =
+        before_uniform_sky({RenderGrains{at, radius, covers, color}, model::Look::opaque({1, 1, 1})}, 12);
     const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
     for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1 - opacity + opacity * color[0][k], 1e-3f) << opacity;
   }

@@ -24,9 +24,9 @@ Pool still_pool() {
   const auto n = static_cast<int>(std::lround(side / spacing)), up = static_cast<int>(std::lround(depth / spacing));
   for (int j = 0; j < up; ++j)
     for (int i = 0; i < n * n; ++i)
-      pool.position.push_back(Vec3f{static_cast<float>(i / n) + 0.5f, static_cast<float>(j) + 0.5f,
-                                    static_cast<float>(i % n) + 0.5f} *
-                              spacing);
+      pool.position.push_back(
+          Vec3f{static_cast<float>(i / n) + 0.5f, static_cast<float>(j) + 0.5f, static_cast<float>(i % n) + 0.5f} *
+          spacing);
   pool.velocity.resize(pool.position.size());
   for (std::size_t i = 0; i < pool.position.size(); ++i) pool.id.push_back(static_cast<std::int32_t>(i));
   return pool;
@@ -80,8 +80,7 @@ void drops(Trial& t) {
   t.chose("single drops of spray, let go 19 m high, over 1.75 s: the speed of the last frame");
   // Drops above 2 mm are no spheres: a few parts in a hundred. A tenth is what spray has to have.
   t.at_most("fall of drops of 1 to 3 mm: farthest off the measured speed", worst(measured, fall(1)), 0.1, "%");
-  t.control("half the drag", "fall of drops of 1 to 3 mm: farthest off the measured speed",
-            worst(measured, fall(0.5)));
+  t.control("half the drag", "fall of drops of 1 to 3 mm: farthest off the measured speed", worst(measured, fall(0.5)));
 }
 
 void bubbles(Trial& t) {
