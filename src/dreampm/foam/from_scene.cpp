@@ -23,9 +23,11 @@ FoamCause cause(const FoamCause& found, float share, const model::FoamLimits& gi
 FoamRules foam_rules(const model::Foam& foam, FoamRules rules, double volume) {
   const double whole = std::max(std::cbrt(volume) / scales_along, 1e-9);
   // The rate goes by the volume of the matter alone: what cells are made of it must not change it.
+  // Where a cell is the scale, what moves seems as much thicker as that is more.
   const double base = foam.scale.value_or(whole);
   rules.scale = std::max(rules.cell, static_cast<float>(base));
-  rules.rate = static_cast<float>(foam.amount * foam.rate.value_or(in_a_scale / (base * base * base)));
+  rules.rate = static_cast<float>(foam.amount *
+                                  foam.rate.value_or(in_a_scale / (base * base * static_cast<double>(rules.scale))));
   rules.radius = static_cast<float>(foam.radius.value_or(base / radii_in_scale));
   rules.life_min = static_cast<float>(foam.life_min), rules.life_max = static_cast<float>(foam.life_max);
   rules.grow = static_cast<float>(foam.grow), rules.fade = static_cast<float>(foam.fade);
