@@ -7,12 +7,13 @@ namespace {
 
 /// The parts of a frame that are exported.
 struct What {
-  bool particles, surface, colliders;
+  bool particles, surface, colliders, foam;
 };
-const std::map<std::string, What> whats{{"particles", {true, false, false}},
-                                        {"surface", {false, true, false}},
-                                        {"colliders", {false, false, true}},
-                                        {"all", {true, true, true}}};
+const std::map<std::string, What> whats{{"particles", {true, false, false, false}},
+                                        {"surface", {false, true, false, false}},
+                                        {"colliders", {false, false, true, false}},
+                                        {"foam", {false, false, false, true}},
+                                        {"all", {true, true, true, true}}};
 
 std::string format_names() {
   std::string names;
@@ -32,7 +33,7 @@ int export_files(const ExportArguments& a) {
   options.what_there_is = a.what.empty();
   const What what = whats.at(a.what.empty() ? "all" : a.what);
   options.particles = what.particles, options.surface = what.surface;
-  options.colliders = what.colliders;
+  options.colliders = what.colliders, options.foam = what.foam;
   if (!a.range.empty()) std::tie(options.first, options.last) = frame_range(a.range);
   const ExportResult result = export_run(open_run(a.folder), options);
   for (const std::filesystem::path& f : result.files) fmt::print("{}\n", f.string());
@@ -57,7 +58,7 @@ void add_export(CLI::App& app, Action& action) {
       ->check(number_in(1e-6, 1e6));
   verb->add_option("--frames", a->range, "only frames A-B, or A:B, both included");
   verb->add_option("--what", a->what,
-                   "particles, surface, colliders (and rigid bodies) or all (default: what there is)")
+                   "particles, surface, foam, colliders (and rigid bodies) or all (default: what there is)")
       ->check(CLI::IsMember(whats));
   verb->add_option("--out", a->options.out, "the file, or the folder of files (default: in DIR/export)");
   verb->callback([a, &action] { action = [a] { return export_files(*a); }; });

@@ -18,6 +18,7 @@
 #include "dreampm/physics/param.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/export_stage.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/inspect.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/make.h"

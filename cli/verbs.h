@@ -31,6 +31,7 @@ void add_bench_play(CLI::App& bench, Action& action);
   DM_APP_VERBS(VERB)   \
   VERB(run)            \
   VERB(points)         \
+  VERB(foam)           \
   VERB(surface)        \
   VERB(render)         \
   VERB(video)          \

@@ -10,7 +10,7 @@ endif()
 set(DM_LIBRARIES "${kinds}" CACHE STRING "which libraries to build, a list: static, shared")
 
 set(objects "")
-foreach(module base physics geometry import import_models level_set state contact io scene backend rigid_motion solver rigid surface render setup pictures run simulation)
+foreach(module base physics geometry import import_models level_set state contact io scene backend rigid_motion solver rigid surface foam render setup pictures run simulation)
   list(APPEND objects $<TARGET_OBJECTS:dm_${module}>)
 endforeach()
 foreach(isa ${DM_ISAS})

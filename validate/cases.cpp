@@ -56,6 +56,8 @@ namespace dreampm::validate {
   X(rigid_momentum)           \
   X(rigid_soil)               \
   X(rigid_push)               \
+  X(foam_drops)               \
+  X(foam_bubbles)             \
   X(convergence)
 
 namespace cases {

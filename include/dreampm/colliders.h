@@ -13,7 +13,7 @@ namespace dreampm {
 
 /// A point of a rigid body that is drawn to a point that stands, by a damped spring. It is
 /// implicit: no stiffness makes a step too long.
-struct Grip {
+struct SpringAnchor {
   /// m, of the shape as the scene gives it: `collider(name).pose.inverse(p)` of a point p of the
   /// body as it stands.
   Vec3d at;
@@ -33,13 +33,13 @@ struct ColliderState {
   WallType type = WallType::separate;  ///< effect of its surface on matter
   double friction = 0;                 ///< Coulomb's coefficient
   double restitution = 0;              ///< of impacts, 0 to 1, of a rigid body; 0 of other colliders
-  double slack = 0;                    ///< cells, as `set_slack` has them
+  double surface_tolerance = 0;        ///< cells, as `set_surface_tolerance` has them
   bool is_rigid = false;               ///< true if it is a rigid body
   bool moves = false;                  ///< true if it may stand elsewhere than in the scene
   bool deforms = false;                ///< true if its shape changes
 };
 
-/// The shape of a collider or rigid body where the solver has its surface, which is up to `slack`
+/// The shape of a collider or rigid body where the solver has its surface, which is up to `surface_tolerance`
 /// cells off its pose. Stays as it was when it was asked for. Cheap to copy, safe to share between
 /// threads. Of use only where a Simulation gave it.
 class ColliderShape {

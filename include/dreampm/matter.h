@@ -62,7 +62,7 @@ struct NewParticle {
 
 /// A stroke of the brush: it takes along what lies within a sphere, the more the nearer to its
 /// middle.
-struct Stroke {
+struct VelocityBrush {
   Vec3d point;        ///< m: the middle
   double radius = 0;  ///< m, above 0
   Vec3d velocity{};   ///< m/s: where to

@@ -67,7 +67,7 @@ enum class ForceMean { of_this_call, goes_on };
 /// of observers. In a scene with a fixed `time.dt`, what forms the grid (the next step, dt, hash,
 /// snapshot) throws InputError while an edit asks for shorter steps.
 ///
-/// What can be set can be read back, at once: `set_gravity` and `gravity`, `hold` and `grip`. What
+/// What can be set can be read back, at once: `set_gravity` and `gravity`, `attach` and `anchor`. What
 /// takes a name throws InputError for one that is not there, unless it says what it does then.
 class Simulation {
  public:
@@ -215,7 +215,7 @@ class Simulation {
   /// Cells that it moves between two looks at where its surface is, above 0 to 0.25, from its next
   /// move on: each look takes as long as many steps. Matter feels the velocity of every step. 0.02
   /// at first.
-  void set_slack(std::string_view collider, double slack);
+  void set_surface_tolerance(std::string_view collider, double cells);
   /// A collider more. A rigid body falls, floats and meets the others from the next step on; others
   /// move as they say, by the simulation's time, or stand until `set_motion`. The first rigid body
   /// of a scene reads the meshes of its colliders again. Without a look it has that of scenes which
@@ -223,27 +223,27 @@ class Simulation {
   /// matter, which is of the start of a scene, one that lies in matter by more than a tenth of a
   /// cell, and a rigid body that reaches as far outside of walls, into colliders or other bodies.
   void add(const model::Collider& collider, const std::optional<model::Look>& look = {});
-  /// Holds a rigid body at a point from now on, until another grip of it or `let_go`. Throws
+  /// Holds a rigid body at a point from now on, until it is attached elsewhere or `detach`. Throws
   /// InputError for a name that no rigid body has, or numbers out of range.
-  void hold(std::string_view rigid, const Grip& grip);
-  std::optional<Grip> grip(std::string_view rigid) const;  ///< nothing where it is not held
+  void attach(std::string_view rigid, const SpringAnchor& anchor);
+  std::optional<SpringAnchor> anchor(std::string_view rigid) const;  ///< nothing where it is not held
   /// Lets go of a rigid body; does nothing where it is not held. Throws InputError for a name that
   /// no rigid body has.
-  void let_go(std::string_view rigid);
-  void let_go();  ///< of all
+  void detach(std::string_view rigid);
+  void detach();  ///< of all
   /// A rigid body or another one. Throws InputError for a name that none has, one of a pin, or one
   /// that a probe, sink or cut of the scene goes by.
   void remove_collider(std::string_view name);
 
   // ---- brushes
 
-  /// Takes matter along from now on, until another stroke of the same brush or `lift_brush`: a
+  /// Takes matter along from now on, until another stroke of the same brush or `remove_brush`: a
   /// field `brush` as scene files have it. A simulation may have many brushes, by name. Throws
   /// InputError for numbers out of range, and where the scene has a field of that name itself.
-  void set_brush(std::string_view name, const Stroke& stroke);
-  std::optional<Stroke> brush(std::string_view name) const;  ///< nothing where there is no such brush
+  void set_brush(std::string_view name, const VelocityBrush& stroke);
+  std::optional<VelocityBrush> brush(std::string_view name) const;  ///< nothing where there is no such brush
   /// Removes a brush; does nothing where there is no such brush.
-  void lift_brush(std::string_view name);
+  void remove_brush(std::string_view name);
 
   // ---- memory
 
@@ -259,7 +259,7 @@ class Simulation {
   /// a run, has the same future to the bit, with the same backend and instruction set.
   /// `time.frames` of the scene is at least the frame at hand, bodies have lost their names (and
   /// their colors), brushes are fields of the scene, models are named by their whole paths. Not in
-  /// it: observers, what probes have measured, and the grips of `hold`. Throws InputError for a
+  /// it: observers, what probes have measured, and the anchors of `attach`. Throws InputError for a
   /// name that scenes cannot have, and RunError where it cannot be written.
   void save(const std::filesystem::path& file) const;
   /// Goes on from what `save` wrote, or starts any other scene file: as a new Simulation of it,

@@ -10,18 +10,18 @@ turns a scene file into a film. SI units, y up. Lines that the library reports g
 logging.getLogger("dreampm").
 """
 from ._dreampm import (
-    BodyState, CheckpointFiles, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, Grip, InputError, LedgerFile, Material,
+    BodyState, CheckpointFiles, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, SpringAnchor, InputError, LedgerFile, Material,
     Materials, MaterialState, Mesh, Names, NearCollider, NumericalFailure, ParticleCounts, ParticleFiles, Particles,
-    ParticleSets, Pose, ProbeFiles, RayHit, RunError, Scene, Shape, Simulation, Snapshot, Stepping, StepReport, Stroke, Totals,
+    ParticleSets, Pose, ProbeFiles, RayHit, RunError, Scene, Shape, Simulation, Snapshot, Stepping, StepReport, VelocityBrush, Totals,
     Twist, Walls, box, cast_ray, check, colliders_near, contacts, cylinder, make, mesh, plane, preset,
     refused_parts, render, sphere, validate, version as __version__, write_png)
 from . import model
 
 __all__ = [
-    "BodyState", "CheckpointFiles", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent", "Frames", "Grip",
+    "BodyState", "CheckpointFiles", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent", "Frames", "SpringAnchor",
     "InputError", "LedgerFile", "Material", "MaterialState", "Materials", "Mesh", "Names", "NearCollider",
     "NumericalFailure", "ParticleCounts", "ParticleFiles", "ParticleSets", "Particles", "Pose", "ProbeFiles", "RayHit", "RunError", "Scene", "Shape",
-    "Simulation", "Snapshot", "StepReport", "Stepping", "Stroke", "Totals", "Twist", "Walls", "__version__", "box",
+    "Simulation", "Snapshot", "StepReport", "Stepping", "VelocityBrush", "Totals", "Twist", "Walls", "__version__", "box",
     "cast_ray", "check", "colliders_near", "contacts", "cylinder", "make", "mesh", "model", "plane", "preset",
     "refused_parts", "render", "sphere", "validate", "write_png"]
 

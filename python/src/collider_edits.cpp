@@ -1,4 +1,4 @@
-// Rigid bodies and colliders that come and go, and hands that hold bodies.
+// Rigid bodies and colliders that come and go, and springs that hold bodies.
 #include "bindings.h"
 #include "convert.h"
 #include "held.h"
@@ -24,19 +24,19 @@ void bind_collider_edits(nb::class_<HeldSimulation>& c) {
         "`colliders[name].motion` is set. Refuses one in matter, and a rigid body that reaches outside of walls or\n"
         "into others.")
       .def(
-          "hold",
+          "attach",
           [](Held& h, const std::string& name, const Vector<"at">& at, const Vector<"to">& to, double stiffness,
              double damping) {
-            const Grip grip{at, to, stiffness, damping};
-            h.call([&](Simulation& s) { s.hold(name, grip); });
+            const SpringAnchor anchor{at, to, stiffness, damping};
+            h.call([&](Simulation& s) { s.attach(name, anchor); });
           },
           nb::arg("name"), nb::kw_only(), nb::arg("at"), nb::arg("to"), nb::arg("stiffness"), nb::arg("damping") = 0.0,
           "Draws the point `at` [m] of a rigid body, of its shape as the scene gives it, to `to` [m] by a spring of\n"
-          "`stiffness` [N/m] and `damping` [N s/m], until another hold of that body or `let_go`.")
+          "`stiffness` [N/m] and `damping` [N s/m], until it is attached elsewhere or `detach`.")
       .def(
-          "let_go",
+          "detach",
           [](Held& h, const std::optional<std::string>& name) {
-            h.call([&](Simulation& s) { name ? s.let_go(*name) : s.let_go(); });
+            h.call([&](Simulation& s) { name ? s.detach(*name) : s.detach(); });
           },
           nb::arg("name") = nb::none(), "Of all bodies without a name. Nothing happens where the body is not held.")
       .def(

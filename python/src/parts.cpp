@@ -245,9 +245,9 @@ void bind_colliders(nb::module_& m) {
       .def_prop_ro(
           "deforms", [](const ColliderPart& part) { return state_of(part).deforms; }, "Whether its shape changes.")
       .def_prop_rw(
-          "slack", [](const ColliderPart& part) { return state_of(part).slack; },
-          [](const ColliderPart& part, double slack) {
-            part.held().call([&](Simulation& s) { s.set_slack(part.name, slack); });
+          "surface_tolerance", [](const ColliderPart& part) { return state_of(part).surface_tolerance; },
+          [](const ColliderPart& part, double cells) {
+            part.held().call([&](Simulation& s) { s.set_surface_tolerance(part.name, cells); });
           },
           "Cells that it moves between two looks at where its surface is, above 0 to 0.25: each look takes as long\n"
           "as many steps.")

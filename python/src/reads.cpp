@@ -58,30 +58,30 @@ void bind_states(nb::module_& m) {
       .def_ro("color", &BodyState::color, "sRGB, 0 to 1; None: as the look of its material.");
   show(body, "BodyState", {"material", "first_id", "count", "color"});
 
-  nb::class_<Grip> grip(m, "Grip", "How a rigid body is held.");
-  grip.def_ro("at", &Grip::at, "The point of its shape, as the scene gives it [m].")
-      .def_ro("to", &Grip::to, "Where it is drawn to [m].")
-      .def_ro("stiffness", &Grip::stiffness, "[N/m]")
-      .def_ro("damping", &Grip::damping, "[N s/m]");
-  show(grip, "Grip", {"at", "to", "stiffness", "damping"});
+  nb::class_<SpringAnchor> anchor(m, "SpringAnchor", "How a rigid body is held.");
+  anchor.def_ro("at", &SpringAnchor::at, "The point of its shape, as the scene gives it [m].")
+      .def_ro("to", &SpringAnchor::to, "Where it is drawn to [m].")
+      .def_ro("stiffness", &SpringAnchor::stiffness, "[N/m]")
+      .def_ro("damping", &SpringAnchor::damping, "[N s/m]");
+  show(anchor, "SpringAnchor", {"at", "to", "stiffness", "damping"});
 
-  Struct<Stroke>(m, "Stroke",
-                 "A brush that is down: it takes along what lies within a sphere, the more the nearer to its\n"
-                 "middle.")
-      .member("point", &Stroke::point, "Its middle [m].")
-      .member("radius", &Stroke::radius, "[m], above 0.")
-      .member("velocity", &Stroke::velocity, "Where to [m/s].")
-      .member("rate", &Stroke::rate, "How fast matter at the middle comes to that velocity [1/s].")
+  Struct<VelocityBrush>(m, "VelocityBrush",
+                        "A brush that is down: it takes along what lies within a sphere, the more the nearer to its\n"
+                        "middle.")
+      .member("point", &VelocityBrush::point, "Its middle [m].")
+      .member("radius", &VelocityBrush::radius, "[m], above 0.")
+      .member("velocity", &VelocityBrush::velocity, "Where to [m/s].")
+      .member("rate", &VelocityBrush::rate, "How fast matter at the middle comes to that velocity [1/s].")
       .done();
 }
 
 nb::tuple corners(const Box3d& box) { return nb::make_tuple(box.min, box.max); }
 
 void bind_shapes(nb::module_& m) {
-  nb::class_<ColliderShape> c(
-      m, "ColliderShape",
-      "The shape of a collider or rigid body where the solver has its surface, which is up to `slack` cells off its\n"
-      "pose. It stays as it was when it was asked for.");
+  nb::class_<ColliderShape> c(m, "ColliderShape",
+                              "The shape of a collider or rigid body where the solver has its surface, which is up to "
+                              "`surface_tolerance` cells off its\n"
+                              "pose. It stays as it was when it was asked for.");
   c.def_prop_ro("name", &ColliderShape::name)
       .def_prop_ro("mass", &ColliderShape::mass, "kg, of a rigid body; 0 of others.")
       .def_prop_ro("is_rigid", &ColliderShape::is_rigid, "Whether it is a rigid body.")
@@ -196,14 +196,15 @@ void bind_what_there_is(nb::class_<Held>& c) {
           nb::sig("def material(self, name: str, **parameters: float) -> MaterialState"),
           "What a material comes to as it stands: sim.material('jelly').sound_speed; or, with other values of some of\n"
           "its parameters, as it would be: sim.material('jelly', youngs_modulus=1e5). Nothing is changed.")
-      .def_prop_ro("brushes", brushes, nb::sig("def brushes(self) -> dict[str, Stroke]"), "That are down, by name.");
+      .def_prop_ro("brushes", brushes, nb::sig("def brushes(self) -> dict[str, VelocityBrush]"),
+                   "That are down, by name.");
 }
 
 void bind_shape_queries(nb::class_<Held>& c) {
   c.def(
-       "grip",
-       [](Held& h, const std::string& name) { return h.look([&](const Simulation& s) { return s.grip(name); }); },
-       nb::arg("name"), "How `hold` holds a rigid body; None where it is not held.")
+       "anchor",
+       [](Held& h, const std::string& name) { return h.look([&](const Simulation& s) { return s.anchor(name); }); },
+       nb::arg("name"), "The spring of `attach` on a rigid body; None where it has none.")
       .def(
           "collider_shape",
           [](Held& h, const std::string& name) {

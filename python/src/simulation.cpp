@@ -218,7 +218,7 @@ void bind_state(nb::class_<Held>& c) {
           "Writes this moment as a scene that goes on from it: FILE, which must end in .yaml, and beside it the same\n"
           "name with .start.h5, which holds all matter. Simulation(Scene.load(FILE)) has the same future to the bit,\n"
           "with the same backend and instruction set. Bodies have lost their names and colors; brushes are\n"
-          "fields of that scene. Not in it: observers, what probes have measured, and what `hold` holds.")
+          "fields of that scene. Not in it: observers, what probes have measured, and the springs of `attach`.")
       .def("surface", surface, nb::arg("material") = nb::none(), nb::kw_only(),
            nb::arg("voxel") = SurfaceOptions().voxel, nb::arg("smooth") = SurfaceOptions().smooth,
            "The surface of a material's particles as a Mesh; the only material needs no name. voxel: edge of a\n"
@@ -266,14 +266,15 @@ void bind_edits(nb::class_<Held>& c) {
           "A material more, of which there is no particle yet.")
       .def(
           "set_brush",
-          [](Held& h, const std::string& name, const Record<Stroke>& stroke) {
-            const Stroke given = value_of(stroke);
+          [](Held& h, const std::string& name, const Record<VelocityBrush>& stroke) {
+            const VelocityBrush given = value_of(stroke);
             h.call([&](Simulation& s) { s.set_brush(name, given); });
           },
           nb::arg("name"), nb::arg("stroke"),
-          "Takes matter along until another stroke of the same name, or `lift_brush`.")
+          "Takes matter along until another stroke of the same name, or `remove_brush`.")
       .def(
-          "lift_brush", [](Held& h, const std::string& name) { h.call([&](Simulation& s) { s.lift_brush(name); }); },
+          "remove_brush",
+          [](Held& h, const std::string& name) { h.call([&](Simulation& s) { s.remove_brush(name); }); },
           nb::arg("name"), "Nothing happens where there is no such brush.");
 }
 

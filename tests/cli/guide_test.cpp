@@ -58,9 +58,9 @@ std::string name_of_page(const testing::TestParamInfo<const char*>& page) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Pages, Guide,
-                         testing::Values("guide/first-film.md", "guide/first-material.md", "guide/first-probe.md",
-                                         "guide/farm.md", "howto/open-in-houdini.md", "howto/open-in-paraview.md",
-                                         "howto/editor.md"),
+                         testing::Values("guide/first-film.md", "guide/foam.md", "guide/first-material.md",
+                                         "guide/first-probe.md", "guide/farm.md", "howto/open-in-houdini.md",
+                                         "howto/open-in-paraview.md", "howto/editor.md"),
                          name_of_page);
 
 class GuideError : public Typing {};

@@ -150,9 +150,9 @@ def test_a_brush_takes_matter_along(tank):
     for stroke in (False, True):
         sim = dm.Simulation(tank)
         if stroke:
-            sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.08, velocity=(0, 2, 0)))
+            sim.set_brush("hand", dm.VelocityBrush(point=(0.1, 0.1, 0.1), radius=0.08, velocity=(0, 2, 0)))
         sim.advance_to(0.05)
-        sim.lift_brush("hand")
+        sim.remove_brush("hand")
         moved.append(sim.particles["water"].velocity[:, 1].max())
         sim.advance_to(0.06)
     assert moved[1] > moved[0] + 0.5
@@ -208,11 +208,11 @@ def test_a_held_body_does_not_fall(tank):
     place = np.array([0.1, 0.3, 0.1])
     sim.add(crate(place))
     at = place - np.array(sim.colliders["crate"].pose.position)
-    sim.hold("crate", at=at, to=place, stiffness=1e5, damping=100)
+    sim.attach("crate", at=at, to=place, stiffness=1e5, damping=100)
     there = np.array(sim.colliders["crate"].motion.center)
     sim.advance_to(0.1)
     assert np.allclose(sim.colliders["crate"].motion.center, there, atol=2e-3)
-    sim.let_go("crate")
+    sim.detach("crate")
     sim.advance_to(0.15)
     assert sim.colliders["crate"].motion.center[1] < there[1] - 0.005
 

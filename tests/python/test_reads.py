@@ -12,7 +12,7 @@ def test_names(tank):
     assert names.materials == ["water", "jelly"] and names.bodies == ["pool", "cube"] and names.colliders == ["gate"]
     assert names.rigid == names.emitters == names.brushes == []
     sim.add(Collider("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)), rigid=Rigid(density=1000)))
-    sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
+    sim.set_brush("hand", dm.VelocityBrush(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
     assert sim.names.rigid == ["crate"] and "crate" in sim.names.colliders and sim.names.brushes == ["hand"]
     assert "names" in dir(sim) and "colliders=['gate'" in repr(sim.names)
 
@@ -22,7 +22,7 @@ def test_what_is_set_is_read_back_also_from_a_file(tank, tmp_path):
     sim.gravity, sim.cfl = (1, -9, 0), 0.3
     sim.walls["x_max"] = ("separate", 0.3)
     sim.colliders["gate"].motion = dm.Twist(velocity=(0, 0.5, 0))
-    sim.colliders["gate"].slack = 0.1
+    sim.colliders["gate"].surface_tolerance = 0.1
     sim.materials["water"].viscosity = 2
     sim.step()
     sim.save(tmp_path / "kept.yaml")
@@ -35,7 +35,7 @@ def test_what_is_set_is_read_back_also_from_a_file(tank, tmp_path):
         assert s.gravity == (1, -9, 0) and s.cfl == s.stepping.cfl == 0.3 and s.materials["water"].viscosity == 2
         assert s.walls["x_max"].friction == 0.3 and not s.walls["x_max"].skin_friction
         gate = s.colliders["gate"]
-        assert gate.motion.velocity == (0, 0.5, 0) and gate.slack == 0.1 and gate.type == "separate"
+        assert gate.motion.velocity == (0, 0.5, 0) and gate.surface_tolerance == 0.1 and gate.type == "separate"
         assert gate.moves and not gate.is_rigid and not gate.deforms
     other.step()
     assert steps == [2]
@@ -50,15 +50,15 @@ def test_what_is_set_is_read_back_also_from_a_file(tank, tmp_path):
 def test_grips_and_brushes(tank):
     sim = dm.Simulation(tank)
     sim.add(Collider("crate", dm.box((0.28, 0.2, 0.06), (0.36, 0.28, 0.14)), rigid=Rigid(density=1000)))
-    assert sim.grip("crate") is None and sim.brushes == {}
-    sim.hold("crate", at=(0.3, 0.2, 0.1), to=(0.3, 0.3, 0.1), stiffness=50, damping=2)
-    grip = sim.grip("crate")
+    assert sim.anchor("crate") is None and sim.brushes == {}
+    sim.attach("crate", at=(0.3, 0.2, 0.1), to=(0.3, 0.3, 0.1), stiffness=50, damping=2)
+    grip = sim.anchor("crate")
     assert grip.to == (0.3, 0.3, 0.1) and grip.stiffness == 50 and grip.damping == 2
-    sim.let_go()
-    assert sim.grip("crate") is None
-    sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
+    sim.detach()
+    assert sim.anchor("crate") is None
+    sim.set_brush("hand", dm.VelocityBrush(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0), rate=50))
     assert sim.brushes["hand"].radius == 0.05 and sim.brushes["hand"].velocity == (1, 0, 0)
-    sim.lift_brush("hand")
+    sim.remove_brush("hand")
     assert sim.brushes == {}
 
 

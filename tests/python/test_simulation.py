@@ -87,7 +87,7 @@ def test_a_simulation_is_saved_and_goes_on(tank, tmp_path):
     sim.advance_to(0.05)
     sim.materials["jelly"].density = 700
     sim.colliders["gate"].motion = dm.Twist(velocity=(0, 0.5, 0))
-    sim.set_brush("hand", dm.Stroke(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0)))
+    sim.set_brush("hand", dm.VelocityBrush(point=(0.1, 0.1, 0.1), radius=0.05, velocity=(1, 0, 0)))
     sim.step()
     sim.save(tmp_path / "pond.yaml")
     assert sorted(os.listdir(tmp_path)) == ["pond.start.h5", "pond.yaml"]

@@ -3,6 +3,7 @@
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/math/rng.h"
 #include "dreampm/render/color.h"
 #include "shapes.h"
 
@@ -48,6 +49,33 @@ TEST(Furnace, GrayBallSendsBackItsAlbedo) {
   const auto scene = before_uniform_sky({RenderSpheres{at, 1, color}, model::Look::opaque({0.9, 0.9, 0.9})}, 12);
   const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], color[0][k], 1e-4f);
+}
+
+TEST(Furnace, AGrainCoversItsShareAndSendsBackItsAlbedo) {
+  const std::vector<Vec3f> at{{0, 0, 0}}, color{{0, 0.5f, 1}};
+  const std::vector<float> radius{1};
+  for (const float opacity : {1.0f, 0.25f, 0.02f}) {
+    const std::vector<float> covers{opacity};
+    const auto scene =
+        before_uniform_sky({RenderGrains{at, radius, covers, color}, model::Look::opaque({1, 1, 1})}, 12);
+    const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 8)));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(mean[k], 1 - opacity + opacity * color[0][k], 1e-3f) << opacity;
+  }
+}
+
+TEST(Furnace, ManyWhiteGrainsAreInvisible) {
+  std::vector<Vec3f> at, color;
+  std::vector<float> radius, covers;
+  for (int i = 0; i < 400; ++i) {
+    const auto place = [i](int axis) {
+      return 2 * static_cast<float>(uniform(1, static_cast<std::uint64_t>(3 * i + axis))) - 1;
+    };
+    at.push_back({place(0), place(1), place(2)}), color.push_back({1, 1, 1});
+    radius.push_back(0.1f), covers.push_back(i % 2 == 0 ? 0.3f : 1.0f);
+  }
+  const auto scene = before_uniform_sky({RenderGrains{at, radius, covers, color}, model::Look::opaque({1, 1, 1})}, 20);
+  // Paths end after 15 bounces: a little is lost.
+  EXPECT_NEAR(mean_of(render(scene, small_picture(24, 24, 16))).y, 1, 0.03f);
 }
 
 TEST(Slab, TransmitsByFresnelAndBeerLambert) {

@@ -91,12 +91,12 @@ TEST(ColliderEdits, GiveTheSameBitsForAnyNumberOfThreadsAndAfterASnapshot) {
       s.add(crate("low", 400, {0.2, 0.22, 0.2}));
       step(6);
       s.add(crate("high", 900, {0.2, 0.34, 0.21}, {0, 0, 1}));
-      s.hold("low", {{0.26, 0.27, 0.2}, {0.3, 0.25, 0.2}, 300, 10});
+      s.attach("low", {{0.26, 0.27, 0.2}, {0.3, 0.25, 0.2}, 300, 10});
       step(12);
       s.add({"wall", Shape::box({0.41, -1, -1}, {1, 1, 1})});
       s.set_motion("wall", {{-0.3, 0, 0}, {}, {}});
       step(12);
-      s.let_go("low");
+      s.detach("low");
       s.remove_collider("high");
       step(4);
       s.remove_collider("wall");
@@ -115,7 +115,7 @@ TEST(ColliderEdits, AMovingColliderWithSlackPushesAlike) {
     Simulation s(pool(), quiet(2));
     const double slack = n == 0 ? 0.02 : 0.1;
     s.add({"wall", Shape::box({0.4, -1, -1}, {1, 1, 1})});
-    s.set_slack("wall", slack);
+    s.set_surface_tolerance("wall", slack);
     s.set_motion("wall", {{-0.25, 0, 0}, {}, {}});
     s.advance_to(0.4);
     s.set_motion("wall", {});
@@ -151,8 +151,8 @@ TEST(ColliderEdits, SayWhatIsWrong) {
   EXPECT_THAT(refusal([&] { s.add(pinned); }), HasSubstr("rigid.a.motion is only for colliders"));
   EXPECT_THAT(refusal([&] { s.remove_collider("boat"); }), HasSubstr("it has raft"));
   EXPECT_THAT(refusal([&] { s.remove_collider("raft"); }), HasSubstr("probes.track"));
-  EXPECT_THAT(refusal([&] { s.hold("boat", {{}, {}, 1, 1}); }), HasSubstr("it has raft"));
-  EXPECT_THAT(refusal([&] { s.hold("raft", {{}, {}, 0, 1}); }), HasSubstr("stiffness above 0"));
+  EXPECT_THAT(refusal([&] { s.attach("boat", {{}, {}, 1, 1}); }), HasSubstr("it has raft"));
+  EXPECT_THAT(refusal([&] { s.attach("raft", {{}, {}, 0, 1}); }), HasSubstr("stiffness above 0"));
   EXPECT_THAT(refusal([&] { s.add({"a", Shape::box({0, 0, 0}, {0.1, 0.1, 0.1})}); }),
               HasSubstr("particles lie inside of it"));
   EXPECT_THAT(refusal([&] { s.add({"a", Shape::box({0.25, 0.3, 0.25}, {0.3, 0.4, 0.3})}); }),
@@ -160,7 +160,7 @@ TEST(ColliderEdits, SayWhatIsWrong) {
   model::Collider rough{"a", Shape::box({0, 0.3, 0}, {0.1, 0.4, 0.1})};
   rough.type = WallType::stick, rough.friction = 0.2;
   EXPECT_THAT(refusal([&] { s.add(rough); }), HasSubstr("colliders.a.friction is only for type separate and slip"));
-  EXPECT_THAT(refusal([&] { s.set_slack("raft", 0.5); }), HasSubstr("0.25 cells"));
+  EXPECT_THAT(refusal([&] { s.set_surface_tolerance("raft", 0.5); }), HasSubstr("0.25 cells"));
   EXPECT_EQ(s.hash(), before) << "what is refused changes nothing";
 }
 
@@ -182,14 +182,14 @@ TEST(ColliderEdits, AHeldBodyHangsFromThePointThatIsHeld) {
   s.add(crate("crate", 400, {0.2, 0.22, 0.2}));
   const double k = 5e3, m = s.collider("crate").mass;
   const Vec3d corner{0.26, 0.28, 0.2}, to{0.22, 0.33, 0.2};
-  s.hold("crate", {s.collider("crate").pose.inverse(corner), to, k, 60});
+  s.attach("crate", {s.collider("crate").pose.inverse(corner), to, k, 60});
   s.advance_to(2);
   const ColliderState held = s.collider("crate");
   const Vec3d point = held.pose(corner);
   EXPECT_LT(length(point - (to - Vec3d{0, m * 9.81 / k, 0})), 0.01);
   EXPECT_LT(held.twist.center.y, point.y - 0.06) << "it hangs below";
   EXPECT_LT(std::abs(held.twist.center.x - point.x), 0.04);
-  s.let_go("crate");
+  s.detach("crate");
   s.advance_to(2.06);
   EXPECT_LT(s.collider("crate").twist.velocity.y, -0.4) << "it falls";
 }
@@ -199,7 +199,7 @@ TEST(ColliderEdits, AHoldIsStableHoweverStiffItIs) {
   for (const double k : {1e2, 1e5, 1e9}) {
     Simulation s(pool(), quiet());
     s.add(crate("crate", 400, {0.2, 0.3, 0.2}));
-    s.hold("crate", {{0.26, 0.3, 0.26}, {0.3, 0.32, 0.2}, k, 0.02 * k});
+    s.attach("crate", {{0.26, 0.3, 0.26}, {0.3, 0.32, 0.2}, k, 0.02 * k});
     for (int n = 0; n < 150; ++n) {
       s.step();
       ASSERT_LT(length(s.collider("crate").twist.velocity), 8) << k;

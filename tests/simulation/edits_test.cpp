@@ -305,7 +305,7 @@ TEST(Edits, ABrushTakesAlongWhatItTouchesAlone) {
       EXPECT_LT(length(static_cast<Vec3d>(water.velocity[p])), 0.02);
     }
   EXPECT_GT(s.totals().momentum.y, before.y);
-  s.lift_brush("hand");
+  s.remove_brush("hand");
   const Vec3d lifted = s.totals().momentum;
   s.step();
   EXPECT_NEAR(s.totals().momentum.y, lifted.y, 1e-3 * lifted.y);

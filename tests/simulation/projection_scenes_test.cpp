@@ -212,14 +212,14 @@ TEST(ProjectionScenes, EveryEditGivesTheSameBitsOnAnyThreadsAndFromASnapshot) {
         if (step == 11) s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
         if (step == 13) s.add(cork(Shape::sphere({0.1, 0.34, 0.1}, 0.04)));
         if (step == 15) middle = s.snapshot();
-        if (step == 17) s.lift_brush("hand"), s.reset_state("water");
+        if (step == 17) s.remove_brush("hand"), s.reset_state("water");
         if (step == 19) s.set_motion("post", {{0.1, 0, 0}, {0, 2, 0}, {0.3, 0.1, 0.1}});
         if (step == 21) s.add_particles("water", std::vector<Vec3d>{{0.02, 0.38, 0.08}, {0.06, 0.38, 0.1}}, {0, -2, 0});
         if (step == 23) s.remove(Shape::box({0, 0, 0}, {0.06, 0.2, 0.1}));
         if (step == 25) s.add({"shelf", Shape::box({0.3, 0.34, 0.1}, {0.36, 0.4, 0.16})});
-        if (step == 27) s.hold("cork", {{0.1, 0.34, 0.1}, {0.2, 0.3, 0.1}, 40, 2});
+        if (step == 27) s.attach("cork", {{0.1, 0.34, 0.1}, {0.2, 0.3, 0.1}, 40, 2});
         if (step == 29) s.set_parameter("water", "density", 900), s.remove_collider("shelf");
-        if (step == 31) s.let_go("cork"), s.remove_collider("cork");
+        if (step == 31) s.detach("cork"), s.remove_collider("cork");
       }
       return s.hash();
     };
@@ -248,7 +248,7 @@ TEST(ProjectionScenes, ABrushTakesWaterAlongAndADragStopsIt) {
   pushed.advance_frames(4);
   EXPECT_NEAR(mean_velocity(pushed).x, 0.3, 0.005);
   EXPECT_NEAR(mean_velocity(pushed).y, 0.1, 0.005);
-  pushed.lift_brush("hand");
+  pushed.remove_brush("hand");
   pushed.advance_frames(2);
   EXPECT_NEAR(mean_velocity(pushed).x, 0.3, 0.005);
   Simulation held = liquid_of(basin(drop + "fields: {air: {type: drag, rate: 5, velocity: [0.4, 0, 0]}}\n"));

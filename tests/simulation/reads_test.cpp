@@ -108,32 +108,32 @@ TEST_P(Reads, ParametersWithUnitsAndRanges) {
 
 TEST_P(Reads, ColliderMotionAndSlack) {
   simulation->set_motion("plate", {{0.1, 0, 0}, {0, 0, 1}, {0.05, 0.32, 0.1}});
-  simulation->set_slack("plate", 0.1);
+  simulation->set_surface_tolerance("plate", 0.1);
   expect_kept([](const Simulation& s, const char* when) {
     const ColliderState plate = s.collider("plate");
     EXPECT_EQ(plate.twist.velocity, (Vec3d{0.1, 0, 0})) << when;
     EXPECT_EQ(plate.twist.spin, (Vec3d{0, 0, 1})) << when;
-    EXPECT_EQ(plate.slack, 0.1) << when;
+    EXPECT_EQ(plate.surface_tolerance, 0.1) << when;
     EXPECT_EQ(plate.type, WallType::slip) << when;
     EXPECT_EQ(plate.friction, 0.2) << when;
     EXPECT_TRUE(plate.moves && !plate.is_rigid && !plate.deforms) << when;
     EXPECT_TRUE(s.collider("crate").is_rigid) << when;
     EXPECT_NEAR(s.collider("crate").mass, 400 * 0.08 * 0.08 * 0.08, 1e-12) << when;
   });
-  EXPECT_THROW(simulation->set_slack("plate", 0.3), InputError);
+  EXPECT_THROW(simulation->set_surface_tolerance("plate", 0.3), InputError);
 }
 
 TEST_P(Reads, GripsUntilTheyAreLetGo) {
-  EXPECT_FALSE(simulation->grip("crate"));
-  const Grip grip{{0.01, 0.02, 0}, {0.2, 0.3, 0.1}, 50, 2};
+  EXPECT_FALSE(simulation->anchor("crate"));
+  const SpringAnchor grip{{0.01, 0.02, 0}, {0.2, 0.3, 0.1}, 50, 2};
   for (const bool all : {false, true}) {
-    simulation->hold("crate", grip);
+    simulation->attach("crate", grip);
     simulation->step();
-    const std::optional<Grip> now = simulation->grip("crate");
+    const std::optional<SpringAnchor> now = simulation->anchor("crate");
     ASSERT_TRUE(now);
     EXPECT_TRUE(now->at == grip.at && now->to == grip.to && now->stiffness == 50 && now->damping == 2);
-    all ? simulation->let_go() : simulation->let_go("crate");
-    EXPECT_FALSE(simulation->grip("crate"));
+    all ? simulation->detach() : simulation->detach("crate");
+    EXPECT_FALSE(simulation->anchor("crate"));
   }
 }
 
@@ -141,11 +141,11 @@ TEST_P(Reads, BrushesUntilTheyAreLifted) {
   EXPECT_FALSE(simulation->brush("hand"));
   simulation->set_brush("hand", {{0.1, 0.06, 0.1}, 0.05, {1, 0, 0}, 50});
   simulation->step();
-  const std::optional<Stroke> now = simulation->brush("hand");
+  const std::optional<VelocityBrush> now = simulation->brush("hand");
   ASSERT_TRUE(now);
   EXPECT_TRUE(now->point == (Vec3d{0.1, 0.06, 0.1}) && now->radius == 0.05 && now->velocity.x == 1 && now->rate == 50);
   EXPECT_THAT(simulation->names().brushes, ElementsAre("hand"));
-  simulation->lift_brush("hand");
+  simulation->remove_brush("hand");
   EXPECT_FALSE(simulation->brush("hand"));
   EXPECT_THAT(simulation->names().brushes, IsEmpty());
 }
@@ -295,10 +295,10 @@ TEST_P(Reads, NamesThatAreNotThere) {
   EXPECT_THAT([&] { s.collider_shape("plat"); },
               says(HasSubstr("collider plat is not in the scene; it has plate, crate")));
   EXPECT_THAT([&] { s.collider_mesh("plat"); }, says(HasSubstr("it has plate, crate")));
-  EXPECT_THAT([&] { s.grip("plate"); }, says(HasSubstr("rigid body plate is not in the scene; it has crate")));
+  EXPECT_THAT([&] { s.anchor("plate"); }, says(HasSubstr("rigid body plate is not in the scene; it has crate")));
   EXPECT_THAT([&] { s.body("pol"); }, says(HasSubstr("body pol is not in the scene; it has pool")));
   EXPECT_THAT([&] { s.probe("lvel"); }, says(HasSubstr("probe lvel is not in the scene; it has level")));
-  EXPECT_THAT([&] { s.set_slack("plat", 0.1); }, says(HasSubstr("it has plate, crate")));
+  EXPECT_THAT([&] { s.set_surface_tolerance("plat", 0.1); }, says(HasSubstr("it has plate, crate")));
   EXPECT_THAT([&] { s.set_cfl(-1); }, says(HasSubstr("cfl")));
 }
 
@@ -337,7 +337,7 @@ TEST_P(Reads, ShapesStandWhereTheirCollidersDo) {
   simulation->advance_to(0.1);
   const ColliderShape after = simulation->collider_shape("plate");
   const double moved = simulation->collider("plate").pose.position.y, off = 0.02 * 0.04;
-  EXPECT_NEAR(after.distance({0.05, 0.36 + moved, 0.1}), 0.02, off) << "up to the slack";
+  EXPECT_NEAR(after.distance({0.05, 0.36 + moved, 0.1}), 0.02, off) << "up to the surface tolerance";
   EXPECT_NEAR(after.bounds().max.y, 0.34 + moved, off);
   EXPECT_NEAR(after.own_bounds().max.y, 0.34, 1e-12);
   EXPECT_EQ(after.velocity({0.05, 0.36, 0.1}).y, 0.5);

@@ -60,7 +60,7 @@ void script(Simulation& s, const Each& each) {
     if (step == 30) s.set_brush("hand", {{0.06, 0.04, 0.08}, 0.05, {1, 2, 0}, 300});
     if (step == 35) s.reset_state("jelly");
     if (step == 40)
-      s.lift_brush("hand"),
+      s.remove_brush("hand"),
           s.add_material(parse_material("{type: newtonian, preset: honey, bulk_modulus: 2.0e5}", "honey"));
     if (step == 42) s.add({"drop", "honey", Shape::sphere({0.06, 0.17, 0.08}, 0.02)});
     if (step == 44) s.add_particles("water", std::vector<Vec3d>{{0.21, 0.18, 0.08}, {0.21, 0.18, 0.11}}, {0, -2, 0});

@@ -64,7 +64,7 @@ TEST(Taps, GiveNothingInsideOfALidThatAProgramPutThere) {
       model::Collider body{"lid", lid};
       body.rigid = {.density = 500};
       s.add(body);
-      s.hold("lid", {{0.32, 0.25, 0.1}, {0.32, 0.25, 0.1}, 1e5, 1e3});
+      s.attach("lid", {{0.32, 0.25, 0.1}, {0.32, 0.25, 0.1}, 1e5, 1e3});
     } else {
       s.add({"lid", lid});
     }

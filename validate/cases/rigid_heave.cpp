@@ -129,19 +129,19 @@ void judge(Trial& t, const std::vector<int>& sizes, bool projection, Plot plot) 
   t.plot(std::move(plot));
 }
 
-constexpr const char* let_go =
+constexpr const char* detach =
     "Let go at rest a tenth of its diameter above its draft. The period is twice the time between its first two "
     "passages of the water's level at the start. The tank is periodic across, {} cells wide. The theory is that in "
     "this tank: waves come back from its ends before the first crest.";
 
 void run(Trial& t) {
-  t.note_choice(fmt::format(let_go, "four"));
+  t.note_choice(fmt::format(detach, "four"));
   judge(t, t.full() ? std::vector{6, 9} : std::vector{6}, false,
         {"rigid-heave", "Heave of a log of half the water's density", "time  [sqrt(a/g)]", "height / lift", {}});
 }
 
 void run_projection(Trial& t) {
-  t.note_choice(fmt::format(let_go, "eight"));
+  t.note_choice(fmt::format(detach, "eight"));
   t.note_choice(
       "The time to the first crest is a period too, which does not ask where the level is: half a millimeter more or "
       "less of that, 2 % of the lift, changes the time between passages by 3 %.");

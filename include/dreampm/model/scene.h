@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "dreampm/model/colliders.h"
+#include "dreampm/model/foam.h"
 #include "dreampm/model/force_field.h"
 #include "dreampm/model/inflow.h"
 #include "dreampm/model/matter.h"
@@ -47,6 +49,7 @@ struct Scene {
   std::vector<ForceField> fields;
   std::vector<Probe> probes;
   Output output;
+  std::optional<Foam> foam{};  ///< absent: none is made
   Surface surface;
   Render render;
   Video video;

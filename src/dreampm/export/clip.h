@@ -44,6 +44,8 @@ struct ClipInfo {
   Vec3d shift{};                        ///< where places of particles and meshes count from
   std::vector<ClipMaterial> materials;  ///< ParticleFrame::material counts them
   bool particles = true;                ///< whether frames have them
+  bool foam = false;                    ///< whether frames have spray, foam, bubbles and dust
+  ClipMaterial foam_look{"foam"};       ///< of all of it
   std::vector<int> meshed;              ///< the materials of ClipFrame::meshes
   std::vector<ClipObject> objects;      ///< the scene's colliders and rigid bodies, in its order
   std::optional<ClipCamera> camera;
@@ -61,8 +63,10 @@ struct ClipInfo {
 struct ClipFrame {
   int number = 1;
   ParticleFrame particles;
-  std::vector<Vec3f> colors;         ///< linear, of each particle; empty: they have those of their materials
-  std::vector<TriMesh> meshes;       ///< one for each of ClipInfo::meshed
+  std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
+  std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed
+  /// With columns type, age and life [s], and radius in the unit of the file; all of one material.
+  ParticleFrame foam{};
   std::vector<ObjectState> objects;  ///< one for each of ClipInfo::objects
 };
 

@@ -157,6 +157,21 @@ void add_points(Document& document, const ClipInfo& clip, const ClipFrame& frame
                     {{"attributes", attributes}, {"material", look}, {"mode", int(points)}});
 }
 
+void add_foam(Document& document, const ClipInfo& clip, const ParticleFrame& foam) {
+  if (foam.size() == 0) return;
+  const auto scalars = [&](const char* name) {
+    return document.accessor(std::span<const float>(foam.columns.at(name)), float_number, "SCALAR", true);
+  };
+  const Json attributes{
+      {"POSITION", document.positions(foam.position)},
+      {"_VELOCITY", document.accessor(std::span<const Vec3f>(foam.velocity), float_number, "VEC3", true)},
+      {"_RADIUS", scalars("radius")},
+      {"_TYPE", scalars("type")}};
+  document.add_node(
+      clip.foam_look.name, clip.shift,
+      {{"attributes", attributes}, {"material", document.add_material(clip.foam_look)}, {"mode", int(points)}});
+}
+
 void add_camera(Document& document, const ClipCamera& c) {
   document["cameras"] = Json::array({{{"type", "perspective"},
                                       {"perspective",
@@ -178,6 +193,7 @@ void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pa
     add_mesh(document, clip.mesh_name(m), frame.meshes[m], static_cast<std::size_t>(clip.meshed[m]), clip.shift);
   if (clip.particles)
     for (std::size_t m = 0; m < clip.materials.size(); ++m) add_points(document, clip, frame, m);
+  if (clip.foam) add_foam(document, clip, frame.foam);
   for (std::size_t o = 0; o < clip.objects.size(); ++o)
     add_mesh(document, clip.objects[o].look.name, placed(clip.objects[o], frame.objects[o]),
              document.add_material(clip.objects[o].look), clip.shift);

@@ -17,12 +17,13 @@ std::string note(const ClipInfo& clip, int frame) {
 }
 
 /// As vertices, and elements `p` that name them, without which readers drop them.
-void write_obj_points(const fs::path& file, const ClipInfo& clip, const ClipFrame& frame, const std::string& text) {
+void write_obj_points(const fs::path& file, const ClipInfo& clip, const ParticleFrame& particles,
+                      const std::string& text) {
   replace_file(file, [&](const fs::path& temporary) {
     ByteSink out(temporary, file);
     out.text(fmt::format("# dreampm particles, {}\n", text));
-    for (const Vec3f& x : frame.particles.position) out.text(obj_vertex(x, clip.shift));
-    for (std::size_t i = 1; i <= frame.particles.size(); ++i) out.text(fmt::format("p {}\n", i));
+    for (const Vec3f& x : particles.position) out.text(obj_vertex(x, clip.shift));
+    for (std::size_t i = 1; i <= particles.size(); ++i) out.text(fmt::format("p {}\n", i));
     out.close();
   });
 }
@@ -30,6 +31,7 @@ void write_obj_points(const fs::path& file, const ClipInfo& clip, const ClipFram
 void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   const std::string text = note(clip, frame.number);
   if (clip.particles) write_particles(folder / numbered("particles", frame.number, ".ply"), frame.particles, text);
+  if (clip.foam) write_particles(folder / numbered("foam", frame.number, ".ply"), frame.foam, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
     write_mesh(folder / numbered(clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], clip.shift, text);
   for (std::size_t o = 0; o < clip.objects.size(); ++o)
@@ -39,7 +41,9 @@ void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
 
 void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   const std::string text = note(clip, frame.number);
-  if (clip.particles) write_obj_points(folder / numbered("particles", frame.number, ".obj"), clip, frame, text);
+  if (clip.particles)
+    write_obj_points(folder / numbered("particles", frame.number, ".obj"), clip, frame.particles, text);
+  if (clip.foam) write_obj_points(folder / numbered("foam", frame.number, ".obj"), clip, frame.foam, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
     write_obj(folder / numbered(clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], clip.shift, text);
   for (std::size_t o = 0; o < clip.objects.size(); ++o)

@@ -62,15 +62,18 @@ class Numbers {
 /// The particles of one material.
 class PointsPrim {
  public:
-  PointsPrim(Numbers& numbers, std::string name, std::uint8_t material, float width)
+  /// `own_widths`: each has a radius, the column of that name; else all are `width` wide.
+  PointsPrim(Numbers& numbers, std::string name, std::uint8_t material, float width, bool own_widths = false)
       : name_(std::move(name)),
         material_(material),
         width_(width),
+        own_widths_(own_widths),
         numbers_(numbers),
         extent_(numbers.samples("float3[] extent")),
         points_(numbers.samples("point3f[] points")),
         velocities_(numbers.samples("vector3f[] velocities")),
-        ids_(numbers.samples("int64[] ids")) {}
+        ids_(numbers.samples("int64[] ids")),
+        widths_(numbers.samples("float[] widths", per_point)) {}
 
   void add(int number, const ParticleFrame& frame, const std::vector<Vec3f>& colors) {
     std::vector<std::size_t> own;
@@ -88,7 +91,12 @@ class PointsPrim {
     velocities_.add(number, chosen(frame.velocity));
     ids_.add<std::int32_t>(number, chosen(frame.id));
     for (const auto& [name, values] : frame.columns)
-      if (values.size() == frame.size()) column(name).add<float>(number, chosen(values));
+      if (name == "radius" && own_widths_) {
+        std::vector<float> widths = chosen(values);
+        for (float& w : widths) w *= 2;
+        widths_.add<float>(number, widths);
+      } else if (values.size() == frame.size())
+        column(name).add<float>(number, chosen(values));
     if (colors.empty()) return;
     if (!colors_) colors_ = numbers_.more("color3f[] primvars:displayColor", per_point);
     colors_->add(number, chosen(colors));
@@ -97,7 +105,10 @@ class PointsPrim {
   void write(ByteSink& out, const ClipMaterial& material) {
     out.text(fmt::format("    def Points \"{}\"\n    {{\n", name_));
     for (UsdSamples* s : {&extent_, &points_, &velocities_, &ids_}) s->copy_to(out, "        ");
-    out.text(fmt::format("        float[] widths = [{}] (interpolation = \"constant\")\n", width_));
+    if (own_widths_)
+      widths_.copy_to(out, "        ");
+    else
+      out.text(fmt::format("        float[] widths = [{}] (interpolation = \"constant\")\n", width_));
     for (auto& [name, samples] : columns_) samples->copy_to(out, "        ");
     if (colors_)
       colors_->copy_to(out, "        ");
@@ -116,8 +127,9 @@ class PointsPrim {
   std::string name_;
   std::uint8_t material_;
   float width_;
+  bool own_widths_;
   Numbers& numbers_;
-  UsdSamples extent_, points_, velocities_, ids_;
+  UsdSamples extent_, points_, velocities_, ids_, widths_;
   std::map<std::string, std::unique_ptr<UsdSamples>> columns_;
   std::unique_ptr<UsdSamples> colors_;
 };
@@ -225,6 +237,8 @@ class UsdWriter final : public ClipWriter {
       for (std::size_t m = 0; m < clip.materials.size(); ++m)
         points_.push_back(std::make_unique<PointsPrim>(numbers_, names.take(clip.materials[m].name),
                                                        static_cast<std::uint8_t>(m), width));
+    if (clip.foam)
+      foam_ = std::make_unique<PointsPrim>(numbers_, names.take(clip.foam_look.name), std::uint8_t{0}, width, true);
     for (std::size_t m = 0; m < clip.meshed.size(); ++m)
       meshes_.push_back(std::make_unique<MeshPrim>(numbers_, names.take(clip.mesh_name(m)), path_of(look_of(m))));
     for (const ClipObject& o : clip.objects) {
@@ -239,6 +253,7 @@ class UsdWriter final : public ClipWriter {
 
   void add(const ClipFrame& frame) override {
     for (const auto& p : points_) p->add(frame.number, frame.particles, frame.colors);
+    if (foam_) foam_->add(frame.number, frame.foam, {});
     for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m]->add(frame.number, frame.meshes[m]);
     for (std::size_t o = 0; o < objects_.size(); ++o)
       if (objects_[o])
@@ -251,6 +266,7 @@ class UsdWriter final : public ClipWriter {
     ByteSink out(file_.temporary(), file_.target());
     write_head(out);
     for (std::size_t m = 0; m < points_.size(); ++m) points_[m]->write(out, clip_.materials[m]);
+    if (foam_) foam_->write(out, clip_.foam_look);
     for (const auto& m : meshes_) m->write(out);
     for (std::size_t o = 0; o < objects_.size(); ++o)
       if (objects_[o])
@@ -344,6 +360,7 @@ def Xform "{}" (
   Names in_looks_;
   std::vector<std::string> look_names_;  ///< of the materials, then of the objects
   std::vector<std::unique_ptr<PointsPrim>> points_;
+  std::unique_ptr<PointsPrim> foam_;  ///< spray, foam, bubbles and dust
   std::vector<std::unique_ptr<MeshPrim>> meshes_;
   std::vector<std::optional<ObjectPrim>> objects_;    ///< one for each of ClipInfo::objects, or
   std::vector<std::unique_ptr<MeshPrim>> deforming_;  ///< where it deforms one here

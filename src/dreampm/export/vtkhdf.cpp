@@ -196,8 +196,7 @@ std::vector<std::int64_t> count_up(std::size_t n) {
   return out;
 }
 
-void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const ClipFrame& frame) {
-  const ParticleFrame& p = frame.particles;
+void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const ParticleFrame& p) {
   out.begin(time, p.position, clip.shift);
   out.cells(VtkHdfFile::vertices, count_up(p.size()), 1);
   const hsize_t n = p.size();
@@ -239,11 +238,12 @@ void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<cons
   out.point_data(what, number.data(), n, 0);
 }
 
-/// FILE where the clip has particles, meshes or objects alone; else FILE-particles, FILE-surface
-/// and FILE-colliders.
+/// FILE where the clip has particles, foam, meshes or objects alone; else FILE-particles,
+/// FILE-foam, FILE-surface and FILE-colliders.
 std::vector<fs::path> vtkhdf_files(const ClipInfo& clip, const fs::path& file) {
   std::vector<std::string> parts;
   if (clip.particles) parts.emplace_back("particles");
+  if (clip.foam) parts.emplace_back("foam");
   if (!clip.meshed.empty()) parts.emplace_back("surface");
   if (!clip.objects.empty()) parts.emplace_back("colliders");
   if (parts.size() < 2) return {file};
@@ -259,6 +259,7 @@ class VtkHdfWriter final : public ClipWriter {
     const std::vector<fs::path> files = vtkhdf_files(clip, file);
     std::size_t next = 0;
     if (clip.particles) particles_.emplace(files[next++]);
+    if (clip.foam) foam_.emplace(files[next++]);
     if (!clip.meshed.empty()) meshes_.emplace(files[next++]);
     if (!clip.objects.empty()) objects_.emplace(files[next++]);
     for (const int m : clip.meshed) materials_.push_back(narrow<std::uint8_t>(m, "materials"));
@@ -266,7 +267,8 @@ class VtkHdfWriter final : public ClipWriter {
   }
   void add(const ClipFrame& frame) override {
     const double time = clip_.time(frame.number);
-    if (particles_) add_particles(*particles_, time, clip_, frame);
+    if (particles_) add_particles(*particles_, time, clip_, frame.particles);
+    if (foam_) add_particles(*foam_, time, clip_, frame.foam);
     if (meshes_) add_meshes<std::uint8_t>(*meshes_, time, clip_.shift, frame.meshes, materials_, "material");
     if (!objects_) return;
     std::vector<TriMesh> standing;
@@ -276,15 +278,15 @@ class VtkHdfWriter final : public ClipWriter {
   }
   void finish() override {
     // All are whole before one appears.
-    for (auto* file : {&particles_, &meshes_, &objects_})
+    for (auto* file : {&particles_, &foam_, &meshes_, &objects_})
       if (*file) (*file)->seal();
-    for (auto* file : {&particles_, &meshes_, &objects_})
+    for (auto* file : {&particles_, &foam_, &meshes_, &objects_})
       if (*file) (*file)->commit();
   }
 
  private:
   ClipInfo clip_;
-  std::optional<VtkHdfFile> particles_, meshes_, objects_;
+  std::optional<VtkHdfFile> particles_, foam_, meshes_, objects_;
   std::vector<std::uint8_t> materials_;  ///< of the meshes
   std::vector<std::int32_t> colliders_;  ///< numbers of the objects
 };

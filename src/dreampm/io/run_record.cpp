@@ -76,14 +76,30 @@ class JsonNode {
     std::string is = json_.is_array()    ? "a list"
                      : json_.is_object() ? "an object"
                                          : json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-    if (is.size() > 60) is = is.substr(0, 60) + "..";
+    if (is.size() > 60) is.resize(60), is += "..";
     fail_input("{}: {} must be {}, is {}", source_, path_.empty() ? "the file" : path_, wanted, is);
   }
   const Json& json_;
   std::string source_, path_;
 };
 
-constexpr const char* stage_names[] = {"simulate", "surface", "render", "video"};  // in the order they run
+constexpr const char* stage_names[] = {"simulate", "foam", "surface", "render", "video"};  // in the order they run
+
+/// The counts of a record, by their keys.
+template <class Record, class Each>
+void each_count(Record& f, const Each& each) {
+  each("crest", f.crest), each("trapped_air", f.trapped_air), each("vorticity", f.vorticity);
+  each("beside_walls", f.beside_walls), each("aged", f.aged), each("at_walls", f.at_walls);
+  each("outside", f.outside), each("thinned", f.thinned);
+  each("spray", f.spray), each("foam", f.foam), each("bubbles", f.bubbles), each("dust", f.dust);
+}
+
+Json foam_json(const FoamRecord& f) {
+  Json j = {{"frame", f.frame}};
+  each_count(f, [&](const char* key, std::uint64_t n) { j[key] = n; });
+  j["place"] = {f.place.x, f.place.y, f.place.z};
+  return j;
+}
 
 Json stage_json(const StageRecord& s) {
   Json j = Json::object();
@@ -99,7 +115,21 @@ Json stage_json(const StageRecord& s) {
     put(volume, "taken", v.taken);
     j["volumes"].push_back(std::move(volume));
   }
+  for (const FoamRecord& f : s.foam) j["foam"].push_back(foam_json(f));
+  if (!s.found.empty()) j["found"] = s.found;
   return j;
+}
+
+FoamRecord foam_record(const JsonNode& n) {
+  FoamRecord f;
+  f.frame = n.get<int>("frame");
+  each_count(f, [&](const char* key, std::uint64_t& count) { count = n.get<std::uint64_t>(key); });
+  int axis = 0;
+  n.at("place").each([&](const JsonNode& x) {
+    const double value = x.as<double>();
+    if (axis < 3) f.place[axis++] = value;
+  });
+  return f;
 }
 
 StageRecord stage_record(const JsonNode& n) {
@@ -116,6 +146,9 @@ StageRecord stage_record(const JsonNode& n) {
       s.volumes.push_back({v.get<int>("frame"), v.get<std::string>("material"), v.get<double>("particles"),
                            v.get<double>("mesh"), v.maybe<double>("taken")});
     });
+  if (n.has("foam")) n.at("foam").each([&](const JsonNode& f) { s.foam.push_back(foam_record(f)); });
+  if (n.has("found"))
+    n.at("found").each_key([&](const std::string& key, const JsonNode& v) { s.found[key] = v.as<double>(); });
   return s;
 }
 

@@ -40,6 +40,18 @@ struct VolumeRecord {
   std::optional<double> taken;     ///< m^3; a record of an earlier version has none
 };
 
+/// What became of foam in a frame.
+struct FoamRecord {
+  int frame = 1;
+  std::uint64_t crest = 0, trapped_air = 0, vorticity = 0;   ///< emitted since the frame before, by cause
+  std::uint64_t beside_walls = 0;                            ///< of them, within a scale of a wall or collider
+  Vec3d place{};                                             ///< m, the mean of where they were emitted
+  std::uint64_t aged = 0, at_walls = 0, outside = 0;         ///< ended since, by what ended them
+  std::uint64_t thinned = 0;                                 ///< not emitted, for the bound on how many there are
+  std::uint64_t spray = 0, foam = 0, bubbles = 0, dust = 0;  ///< there now
+  std::uint64_t emitted() const { return crest + trapped_air + vorticity; }
+};
+
 /// A stage that has not run has no fields set and is written as {}.
 struct StageRecord {
   std::optional<double> seconds;
@@ -48,6 +60,8 @@ struct StageRecord {
   std::optional<std::uint64_t> peak_memory_bytes;
   std::optional<std::string> settings_hash;  ///< of the scene's keys this stage depends on: a rerun compares it
   std::vector<VolumeRecord> volumes;         ///< of the surface stage, by frame
+  std::vector<FoamRecord> foam{};            ///< of the foam stage, by frame
+  std::map<std::string, double> found{};     ///< of the foam stage: what the scene left to be found, by its key
   std::optional<std::string> status{};       ///< of its last call: complete | interrupted | failed
   std::optional<std::string> cause{};        ///< of its failure, in plain words
 };
@@ -76,11 +90,11 @@ struct RunRecord {
   std::string backend;
   std::vector<BodyRecord> bodies;  ///< in the order of the scene; a record of an earlier version has none
   std::vector<FrameRecord> frames;
-  std::map<std::string, StageRecord> stages;  ///< simulate, surface, render, video
+  std::map<std::string, StageRecord> stages;  ///< simulate, foam, surface, render, video
   std::map<std::string, std::string> probes;  ///< type by name; their rows lie in probes/NAME.csv
   std::vector<std::string> warnings;
 
-  /// A record with version and commit of this build and the four stages, none run.
+  /// A record with version and commit of this build and the five stages, none run.
   static RunRecord for_this_build();
   /// Records the end of a stage; status, cause and failed_stage follow from all of them.
   void end_stage(const std::string& stage, std::optional<std::string> status,

@@ -4,6 +4,7 @@
 #include <list>
 
 #include "dreampm/math/srgb.h"
+#include "dreampm/pictures/foam_grains.h"
 
 namespace dreampm {
 namespace {
@@ -89,6 +90,11 @@ Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vecto
           vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
     if (cut) cut_mesh(mesh, colors, *cut);
     out.objects.push_back({&mesh, material_look(scene, m), colors});
+  }
+  FoamGrains grains;
+  if (scene.foam && content.foam) {
+    grains = foam_grains(scene, shift, content.foam(), settings);
+    out.objects.push_back(grains.object());
   }
   return render(out, settings);
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "dreampm/foam/foam.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/pictures/render_scene.h"
@@ -29,6 +30,7 @@ SurfaceSettings surface_settings(const model::Scene& scene);
 struct FrameContent {
   std::function<const ParticleFrame&()> particles;  ///< asked for only where a look needs them
   std::function<TriMesh(int material)> mesh;        ///< of a material of meshed_materials()
+  std::function<FoamParticles()> foam{};            ///< of a scene with foam; or none
 };
 
 /// `shift`: where places of the content count from. `bodies`: as in run.json.

@@ -9,7 +9,9 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/export/material.h"
 #include "dreampm/math/camera_view.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/pictures/render_scene.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/surface_stage.h"
 
 namespace dreampm {
@@ -119,6 +121,37 @@ class Objects {
   std::vector<ClipObject> clip_objects_;
 };
 
+/// Whether there is foam to be exported.
+bool foam_of(const RunFolder& run, const ExportOptions& options, const std::vector<int>& frames) {
+  if (!options.foam) return false;
+  if (!run.scene.foam) {
+    if (!options.particles && !options.surface && !options.colliders)
+      fail_input("{}: the scene has no foam", run.folder.string());
+    return false;
+  }
+  const std::string why = no_foam(run, frames);
+  if (why.empty()) return true;
+  if (!options.what_there_is) fail_input("{}", why);
+  info("without foam: {}", why);
+  return false;
+}
+
+/// Foam as particles of one material, in meters.
+ParticleFrame foam_frame(const RunFolder& run, const ClipInfo& clip, int number) {
+  FoamFrame foam = read_foam(foam_file(run, number));
+  ParticleFrame out;
+  out.shift = foam.shift;
+  FoamParticles& p = foam.particles;
+  out.position = std::move(p.position), out.velocity = std::move(p.velocity), out.id = std::move(p.id);
+  out.material.assign(out.size(), 0), out.material_names = {clip.foam_look.name};
+  for (float& r : p.radius) r *= static_cast<float>(clip.axes.scale);
+  out.columns["age"] = std::move(p.age), out.columns["life"] = std::move(p.life);
+  out.columns["radius"] = std::move(p.radius);
+  for (const FoamType t : p.type) out.columns["type"].push_back(static_cast<float>(t));
+  out.columns["type"].resize(out.size());
+  return out;
+}
+
 ClipFrame load(const RunFolder& run, const ClipInfo& clip, const std::optional<Objects>& objects, int number) {
   ClipFrame frame;
   frame.number = number;
@@ -133,6 +166,7 @@ ClipFrame load(const RunFolder& run, const ClipInfo& clip, const std::optional<O
     frame.colors = colors_of(run, clip, frame.particles);
     clip.axes.apply(frame.particles);
   }
+  if (clip.foam) frame.foam = foam_frame(run, clip, number), clip.axes.apply(frame.foam);
   for (const int m : clip.meshed) {
     frame.meshes.push_back(read_mesh(surface_file(run, m, number)));
     clip.axes.apply(frame.meshes.back());
@@ -182,6 +216,8 @@ ClipInfo clip_of(const RunFolder& run, const ExportOptions& options, const std::
     clip.materials.push_back(material_of(scene.materials[std::size_t(m)].name, material_look(scene, m)));
   clip.particles = options.particles;
   clip.meshed = meshed_of(run, options, frames);
+  clip.foam = foam_of(run, options, frames);
+  if (clip.foam) clip.foam_look.color = linear_color(scene.foam->color);
   clip.camera = camera_of(scene, options.axes);
   return clip;
 }
@@ -201,7 +237,7 @@ ExportResult export_run(const RunFolder& run, const ExportOptions& options) {
   std::optional<Objects> objects;
   if (options.colliders)
     objects.emplace(run, options.axes, run.frame_record(frames.front())), clip.objects = objects->list();
-  if (!clip.particles && clip.meshed.empty() && clip.objects.empty())
+  if (!clip.particles && !clip.foam && clip.meshed.empty() && clip.objects.empty())
     fail_input("{}: has no colliders or rigid bodies; --what all exports what there is", run.folder.string());
   const fs::path target = target_of(run, clip, format, options);
   const std::unique_ptr<ClipWriter> writer = format.writer(clip, target);

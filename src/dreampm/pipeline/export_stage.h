@@ -13,6 +13,7 @@ struct ExportOptions {
   std::filesystem::path out;   ///< a file, or the folder of a format of several; empty: RUN/export/...
   bool particles = true;       ///< or not
   bool surface = true;         ///< or not
+  bool foam = true;            ///< of a scene with foam, or not
   bool colliders = true;       ///< and rigid bodies, or not
   bool what_there_is = false;  ///< surfaces that are not made are left out, not refused
 };

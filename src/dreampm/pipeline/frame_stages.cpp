@@ -3,6 +3,7 @@
 #include <array>
 
 #include "dreampm/pictures/draw.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/render_stage.h"
 #include "dreampm/pipeline/surface_stage.h"
 
@@ -22,7 +23,8 @@ std::string missing_surface(const RunFolder& run, const std::vector<int>& frames
 }  // namespace
 
 std::span<const FrameStage> frame_stages() {
-  static constexpr std::array<FrameStage, 2> all{{
+  static constexpr std::array<FrameStage, 3> all{{
+      {"foam", foam_stage, no_foam, true},
       {"surface", surface_stage, missing_surface},
       {"render", make_pictures, no_picture},
   }};

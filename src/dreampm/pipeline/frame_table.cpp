@@ -12,7 +12,7 @@ namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr const char* taken_out = "-";
+constexpr std::string_view taken_out = "-";
 
 std::vector<std::string> split(const std::string& line) {
   std::vector<std::string> cells;
@@ -25,9 +25,10 @@ bool is_taken_out(const Identity& identity) {
   return std::all_of(identity.begin(), identity.end(), [](const auto& hash) { return hash.second == taken_out; });
 }
 
-Identity taken_out_of(Identity identity) {
-  for (auto& hash : identity) hash.second = taken_out;
-  return identity;
+Identity taken_out_of(const Identity& identity) {
+  Identity out;
+  for (const auto& part : identity) out.emplace_back(part.first, taken_out);
+  return out;
 }
 
 std::vector<std::string> names_of(const Identity& identity) {

@@ -11,6 +11,7 @@
 #include "dreampm/io/archive.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/checkpoint.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/run_folder.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
@@ -219,6 +220,9 @@ Inspection inspect_run(const fs::path& folder) {
   std::string volumes;
   for (const std::string& line : volume_lines(run.record)) volumes += (volumes.empty() ? "" : "; ") + line;
   if (!volumes.empty()) out.facts["volumes"] = volumes;
+  std::string foam;
+  for (const std::string& line : foam_lines(run.record)) foam += (foam.empty() ? "" : "; ") + line;
+  if (!foam.empty()) out.facts["foam"] = foam;
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "dreampm/io/numbered.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pictures/draw.h"
+#include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/pipeline/surface_stage.h"
 #include "dreampm/scene/emit.h"
 
@@ -24,10 +25,12 @@ Image draw(const RunFolder& run, int number, const RenderSettings& settings, con
     return *particles;
   };
   content.mesh = [&](int material) { return read_mesh(surface_file(run, material, number)); };
+  content.foam = [&] { return read_foam(foam_file(run, number)).particles; };
   return draw_frame(run.scene, run.record.shift, run.record.bodies, content, colliders, settings);
 }
 
 void check_surfaces(const RunFolder& run, const std::vector<int>& frames) {
+  if (const std::string why = no_foam(run, frames); !why.empty()) fail_input("{}", why);
   if (meshed_materials(run.scene).empty()) return;
   if (const std::string why = no_surface(run, frames); !why.empty()) fail_input("{}", why);
 }
@@ -54,8 +57,9 @@ std::function<Identity(int frame)> render_identity(const RunFolder& run, const R
   Hash64 own;
   own.add(std::string_view(scene::scene_hash(run.scene, scene::Part::render, run.record.scene_hash)));
   own.add(s.width), own.add(s.height), own.add(s.samples);
-  return [surface = surface_identity(run), hash = own.hex()](int frame) {
+  return [surface = surface_identity(run), foam = foam_identity(run), hash = own.hex()](int frame) {
     Identity identity = surface(frame);
+    for (auto& named : foam(frame)) identity.push_back(std::move(named));
     identity.emplace_back("render settings", hash);
     return identity;
   };

@@ -96,6 +96,12 @@ void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, 
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {
       const Hit hit = cast_visible(geometry_, r.o, r.d, r.media);
+      if (hit.grain > 0) {  // what it does not cover goes on
+        r.weight *= 1 - hit.opacity;
+        if (largest(r.weight) < weakest_photon) break;
+        r.o = r.o + r.d * (hit.t + geometry_.epsilon()), --r.bounces;
+        continue;
+      }
       if (hit.kind == Kind::none || hit.kind == Kind::opaque) break;
       if (const int medium = r.media.top(); medium != air)
         r.weight = r.weight * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);

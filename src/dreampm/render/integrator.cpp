@@ -96,7 +96,9 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) cons
           if (random.next() * weak >= w) break;
           r.weight *= weak / w;
         }
-        if (hit.kind != Kind::opaque)
+        if (hit.grain > 0)
+          alive = at_grain(r, hit, p, random, sum, stack);
+        else if (hit.kind != Kind::opaque)
           alive = at_clear(r, hit, p, random, sum, stack);
         else if (std::holds_alternative<Opaque>(geometry_.look(hit.object)))
           alive = at_opaque(r, hit, p, random, sum, stack);
@@ -233,10 +235,52 @@ bool Integrator::scatter_matte(Path& r, const Vec3f& p, const Vec3f& n, const Ve
   return true;
 }
 
+// What a grain covers scatters, and the rest goes on: both ways are followed, so that a grain
+// smaller than a pixel is a share of it and no noise.
+bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+  --r.bounces;  // passing is no bounce
+  Path passed = r;
+  passed.o = p + r.d * geometry_.epsilon();
+  passed.weight *= 1 - hit.opacity;
+  r.weight *= hit.opacity;
+  if (hit.opacity < 1) {
+    const bool both = r.bounces <= options_.splits && stack.room();
+    const float chance = both ? std::min(1.0f, keep * largest(r.weight)) : std::clamp(hit.opacity, 0.1f, 0.9f);
+    if (both) stack.paths[stack.size++] = passed;
+    if (random.next() >= chance) {
+      if (both) return false;
+      r = passed;
+      r.weight *= 1 / (1 - chance);
+      return true;
+    }
+    r.weight *= 1 / chance;
+  }
+  ++r.bounces;
+  const Vec3f off = (p - hit.center) / hit.grain;
+  const float out = std::sqrt(std::max(0.0f, 1 - dot(off, off)));
+  const Vec3f n = normalized(off - r.d * out), view = -r.d;
+  r.weight = r.weight * hit.color;
+  // Half of the light comes back as from a matte ball, and half goes through as if from its other
+  // side: foam against the sun is bright. The sun on a whole matte ball is seen at the phase angle
+  // between sun and view (Schoenberg 1929).
+  if (sky_.has_sun()) {
+    const SunSample sun = sunlight(hit.center, sky_.sun_direction(), sky_.sun_direction(), r.media, random, hit.grain);
+    const float c = std::clamp(dot(view, sun.direction), -1.0f, 1.0f), phase = std::acos(c);
+    const float both_sides = 2 * std::sqrt(1 - c * c) + (pi - 2 * phase) * c;
+    sum += r.weight * sun.irradiance * (both_sides / (3 * pi * pi));
+  }
+  const Vec3f side = random.next() < 0.5f ? n : -n;
+  const float a = random.next(), b = random.next();
+  r.d = cosine_direction(Frame(side), a, b);
+  r.o = hit.center + side * (hit.grain + geometry_.epsilon());
+  r.sun_disc = false, r.polished = true;
+  return true;
+}
+
 // Along the straight line to the sun; in a medium along the line that a level surface would bend,
 // which is right on the average but draws no caustics on bodies.
 Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media,
-                                           Sampler& random) const {
+                                           Sampler& random, float away) const {
   if (!sky_.has_sun()) return {};
   const float a = random.next(), b = random.next();
   const Vec3f to_sun = sky_.sample_sun(a, b);
@@ -248,8 +292,8 @@ Integrator::SunSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const
     gain = to_sun.y / (y * eta * eta);
   }
   if (dot(n, s.direction) > 0 && dot(face, s.direction) > 0)
-    s.irradiance =
-        transmitted_sun(p + face * geometry_.epsilon(), s.direction, to_sun, media) * sky_.sun_irradiance() * gain;
+    s.irradiance = transmitted_sun(p + face * (away + geometry_.epsilon()), s.direction, to_sun, media) *
+                   sky_.sun_irradiance() * gain;
   return s;
 }
 
@@ -258,8 +302,14 @@ Vec3f Integrator::transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, Media m
   for (int step = 0; step < 24; ++step) {
     const Hit hit = cast_visible(geometry_, o, d, media);
     if (hit.kind == Kind::none) return share;
-    if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
     const Vec3f p = o + d * hit.t;
+    if (hit.grain > 0) {
+      share *= 1 - hit.opacity;
+      if (largest(share) < 1e-3f) return {};
+      o = p + d * geometry_.epsilon();
+      continue;
+    }
+    if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
     if (hit.kind == Kind::dielectric) {
       const int medium = media.top();
       if (medium != air) share = share * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);

@@ -37,7 +37,10 @@ class Integrator {
   bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
   bool scatter_matte(Path& path, const Vec3f& p, const Vec3f& n, const Vec3f& face, const Vec3f& albedo,
                      const SunSample& sun, Sampler& random, Vec3f& sum) const;
-  SunSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media, Sampler& random) const;
+  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
+  /// `away` [m]: as far along the face's normal from p the way to the sun begins.
+  SunSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media, Sampler& random,
+                     float away = 0) const;
   Vec3f transmitted_sun(Vec3f o, Vec3f d, const Vec3f& to_sun, Media media) const;
 
   const Geometry& geometry_;

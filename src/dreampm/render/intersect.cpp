@@ -49,6 +49,9 @@ struct Geometry::Shape {
   std::vector<Vec3f> normals;       ///< per vertex; empty: flat faces
   std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
   std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
+  std::vector<float> opacity{};     ///< per grain; of others empty
+  std::vector<Vec3f> centers{};     ///< m, per grain, with their radii
+  std::vector<float> radii{};
 
   Vec3f color(const Look& look, std::size_t primitive, float u, float v) const {
     if (colors.empty()) return color_of(look);
@@ -84,6 +87,7 @@ Geometry::Geometry(const RenderScene& scene)
         add_mesh(**mesh, o.colors, index);
     }
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
+    if (const auto* grains = std::get_if<RenderGrains>(&o.form)) add_grains(*grains, index);
   }
   std::vector<int> order(looks_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -190,6 +194,39 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
   shapes_.push_back(std::move(shape));
 }
 
+// Discs that face every ray: one hit each, so that what a ray passes costs no second one.
+void Geometry::add_grains(const RenderGrains& grains, int object) {
+  const std::size_t n = grains.positions.size();
+  if (grains.radii.size() != n || grains.opacity.size() != n || grains.colors.size() != n)
+    fail_input("render: {} grains (object {}) with {} radii, {} opacities and {} colors; give one each", n, object,
+               grains.radii.size(), grains.opacity.size(), grains.colors.size());
+  if (n == 0) return;
+  Shape shape;
+  shape.kind = Kind::opaque;
+  shape.object = object;
+  shape.spheres = true;
+  shape.colors.assign(grains.colors.begin(), grains.colors.end());
+  shape.opacity.assign(grains.opacity.begin(), grains.opacity.end());
+  shape.centers.assign(grains.positions.begin(), grains.positions.end());
+  shape.radii.assign(grains.radii.begin(), grains.radii.end());
+  const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_DISC_POINT);
+  auto* discs = static_cast<std::array<float, 4>*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, n));
+  if (discs == nullptr) embree_->check("reserving grains");
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vec3f& p = grains.positions[i];
+    const float r = grains.radii[i];
+    if (!is_finite(p) || !(r > 0) || !std::isfinite(r))
+      fail_input("render: grain {} of object {} is not finite, or its radius, {} m, is not above 0", i, object, r);
+    discs[i] = {p.x, p.y, p.z, r};
+    bounds_.add(p - Vec3f{r, r, r}), bounds_.add(p + Vec3f{r, r, r});
+  }
+  rtcCommitGeometry(g);
+  rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
+  rtcReleaseGeometry(g);
+  shapes_.push_back(std::move(shape));
+}
+
 // The visible edges of the panes: a rim along each wall, a post where two walls meet; just outside
 // the wall planes.
 void Geometry::add_bars() {
@@ -269,6 +306,11 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
       hit.back = dot(hit.geometric, d) > 0;
       if (shape.kind == Kind::opaque) hit.color = shape.color(look(shape.object), primitive, r.hit.u, r.hit.v);
       if (!shape.walls.empty()) wall = shape.walls[primitive];
+      if (!shape.opacity.empty()) {
+        hit.grain = shape.radii[primitive], hit.opacity = shape.opacity[primitive],
+        hit.center = shape.centers[primitive];
+        hit.normal = hit.geometric = -d, hit.back = false;
+      }
       if (!shape.normals.empty() && wall == 0) {
         const auto& [p, q, s] = shape.triangles[primitive];
         const Vec3f n = normalized(shape.normals[p] * (1 - r.hit.u - r.hit.v) + shape.normals[q] * r.hit.u +

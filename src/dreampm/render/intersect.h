@@ -24,6 +24,9 @@ struct Hit {
   int object = air;         ///< index into the scene's objects
   Vec3f normal, geometric;  ///< outward, unit length: for shading, of the face itself
   Vec3f color;              ///< of opaque surfaces, that of their look or their own
+  float grain = 0;          ///< m: the radius of the grain that was met; 0: none
+  float opacity = 1;        ///< of a grain
+  Vec3f center{};           ///< m, of a grain
 };
 
 class Geometry {
@@ -54,6 +57,7 @@ class Geometry {
   struct Shape;
   void add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int object);
   void add_spheres(const RenderSpheres& spheres, int object);
+  void add_grains(const RenderGrains& grains, int object);
   void add_bars();
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;

@@ -32,11 +32,20 @@ struct RenderSpheres {
   std::span<const Vec3f> colors;     ///< linear, one each; or empty: the look's color
 };
 
+/// Balls too small to be seen one by one, as drops and bubbles of foam: matte, and lit as the mean
+/// over a ball where they are smaller than a pixel. The arrays must outlive the call.
+struct RenderGrains {
+  std::span<const Vec3f> positions;  ///< m
+  std::span<const float> radii;      ///< m, one each, > 0; of those below a pixel about half of it
+  std::span<const float> opacity;    ///< the share of its disc that each covers, one each, 0 to 1
+  std::span<const Vec3f> colors;     ///< linear reflectance, one each
+};
+
 /// A form and its look. A mesh is borrowed and must outlive the call; the mesh of a dielectric must
 /// be closed, its triangles counter-clockwise seen from outside, and wall vertices exactly on the
 /// basin's planes.
 struct RenderObject {
-  std::variant<const TriMesh*, RenderSpheres> form;
+  std::variant<const TriMesh*, RenderSpheres, RenderGrains> form;
   model::Look look;
   std::span<const Vec3f> colors{};  ///< linear, one a vertex of an opaque mesh; or empty: the look's color
   TextureFrame frame{};             ///< of wood

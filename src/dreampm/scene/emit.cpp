@@ -99,11 +99,19 @@ std::string scene_hash(const model::Scene& scene, Part part, const std::string& 
   }
   Hash64 later;
   later.add(std::string_view(simulation.empty() ? hash.hex() : simulation));
+  if (part == Part::foam) {
+    if (!scene.foam) return later.hex();
+    model::Foam f = *scene.foam;
+    f.color = {};  // it is for pictures
+    add_text(later, write_map(f, foam_schema()));
+    return later.hex();
+  }
   Surface s = scene.surface;
   s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
   add_text(later, write_map(s, surface_schema()));
   if (part >= Part::render) {
     add_text(later, write_map(scene.render, render_schema()));
+    if (scene.foam) later.add(std::string_view(yaml_list(scene.foam->color)));
     add_colors(later, scene);
   }
   if (part == Part::video) add_text(later, write_map(scene.video, video_schema()));

@@ -19,6 +19,7 @@ enum class Part {
   simulation,  ///< all that decides the state: space, time, gravity, fields, seed, materials, bodies, colliders, files
                ///< they name
   particles,   ///< attributes that are written, and the probes
+  foam,        ///< the foam alone
   surface,
   render,
   video

@@ -67,6 +67,7 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
   read_map(in, root, "", scene_schema(), scene, own_keys());
   check_cuts(in, root.find("bodies"), scene);
   read_looks(in, root.find("render"), scene);
+  check_foam(in, root.find("foam"), scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);
   if (in.problems.errors() == 0) check_voxel(in, root, scene);

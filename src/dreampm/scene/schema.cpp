@@ -100,6 +100,7 @@ const Schema<Scene>& scene_schema() {
       names("fields", read_fields, write_fields, fields_info()).says("Forces that act on matter from afar."),
       names("probes", read_probes, write_probes, probes_info()).says("What is measured while the scene runs."),
       section("output", &Scene::output, output_schema()).says("What a run writes."),
+      foam(),
       section("surface", &Scene::surface, surface_schema()).says("How a surface is wrapped around particles."),
       section("render", &Scene::render, render_schema()).says("How pictures are drawn."),
       section("video", &Scene::video, video_schema()).says("How the video is encoded."),

@@ -122,6 +122,12 @@ void read_transfer(Reading& in, const YamlNode& material, const std::string& pat
 void write_transfer(const Material& from, YamlNode& material);
 std::vector<KeyInfo> transfer_info();
 
+/// foam: what is finer than particles.
+Field<model::Scene> foam();
+const Schema<model::Foam>& foam_schema();
+/// Checks the names in foam.of, and that there is matter that foams.
+void check_foam(Reading& in, const YamlNode* foam, const model::Scene& scene);
+
 /// gravity: [x, y, z], or {keys: [{t, value}, ...]}
 Field<model::Scene> gravity();
 

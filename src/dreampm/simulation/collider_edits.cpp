@@ -142,29 +142,29 @@ void take_out(Simulation::Impl& impl, std::string_view name) {
 
 }  // namespace
 
-void Simulation::hold(std::string_view rigid, const Grip& grip) {
-  if (!is_finite(grip.at) || !is_finite(grip.to) || !(grip.stiffness > 0) || !(grip.damping >= 0) ||
-      !std::isfinite(grip.stiffness + grip.damping))
+void Simulation::attach(std::string_view rigid, const SpringAnchor& anchor) {
+  if (!is_finite(anchor.at) || !is_finite(anchor.to) || !(anchor.stiffness > 0) || !(anchor.damping >= 0) ||
+      !std::isfinite(anchor.stiffness + anchor.damping))
     fail_input("hold: at and to must be finite, stiffness above 0 and damping at least 0");
   impl_->with_engine([&](auto& engine) {
-    impl_->rigid_body(engine.world(), rigid).hold = Hold{grip.at, {grip.to, grip.stiffness, grip.damping}};
+    impl_->rigid_body(engine.world(), rigid).hold = Hold{anchor.at, {anchor.to, anchor.stiffness, anchor.damping}};
   });
 }
 
-void Simulation::let_go(std::string_view rigid) {
+void Simulation::detach(std::string_view rigid) {
   impl_->with_engine([&](auto& engine) { impl_->rigid_body(engine.world(), rigid).hold.reset(); });
 }
 
-void Simulation::let_go() {
+void Simulation::detach() {
   impl_->with_engine([](auto& engine) {
     for (RigidBody& body : engine.world().rigid) body.hold.reset();
   });
 }
 
-void Simulation::set_slack(std::string_view collider, double slack) {
-  if (!(slack > 0 && slack <= most_slack))
-    fail_input("set_slack: slack is {}: must be above 0 to {} cells", slack, most_slack);
-  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).slack = slack; });
+void Simulation::set_surface_tolerance(std::string_view collider, double cells) {
+  if (!(cells > 0 && cells <= most_slack))
+    fail_input("set_surface_tolerance: {}: must be above 0 to {} cells", cells, most_slack);
+  impl_->with_engine([&](auto& engine) { impl_->collider(engine.world(), collider).slack = cells; });
 }
 
 void Simulation::add(const model::Collider& collider, const std::optional<model::Look>& look) {

@@ -140,7 +140,7 @@ void Simulation::set_motion(std::string_view collider, const Twist& motion) {
   impl_->state.edited = true;
 }
 
-void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
+void Simulation::set_brush(std::string_view name, const VelocityBrush& stroke) {
   if (!is_finite(stroke.point) || !is_finite(stroke.velocity) || !(stroke.radius > 0) || !(stroke.rate >= 0) ||
       !std::isfinite(stroke.radius + stroke.rate))
     fail_input("set_brush: point and velocity must be finite, radius above 0 and rate at least 0");
@@ -158,7 +158,7 @@ void Simulation::set_brush(std::string_view name, const Stroke& stroke) {
   impl_->state.brush_speed = std::max(impl_->state.brush_speed, length(stroke.velocity));
 }
 
-void Simulation::lift_brush(std::string_view name) {
+void Simulation::remove_brush(std::string_view name) {
   impl_->with_engine([&](auto& engine) {
     std::vector<ForceField>& fields = engine.world().fields;
     const auto own = fields.begin() + static_cast<std::ptrdiff_t>(scene().model().fields.size());

@@ -289,7 +289,7 @@ ColliderState Simulation::collider(std::string_view name) const {
     const Impl::Received& received = impl_->received;
     if (number < received.impulse.size() && received.seconds > 0)
       state.force = received.impulse[number] / -received.seconds;
-    state.type = c.contact(), state.friction = c.friction, state.slack = c.slack;
+    state.type = c.contact(), state.friction = c.friction, state.surface_tolerance = c.slack;
     state.is_rigid = c.rigid, state.moves = c.moves(), state.deforms = c.changing != nullptr;
     return state;
   });
@@ -325,20 +325,20 @@ TriMesh Simulation::collider_mesh(std::string_view name) const {
                                 c->thickness);
 }
 
-std::optional<Grip> Simulation::grip(std::string_view rigid) const {
-  return impl_->with_engine([&](auto& engine) -> std::optional<Grip> {
+std::optional<SpringAnchor> Simulation::anchor(std::string_view rigid) const {
+  return impl_->with_engine([&](auto& engine) -> std::optional<SpringAnchor> {
     const std::optional<Hold>& hold = impl_->rigid_body(engine.world(), rigid).hold;
     if (!hold) return std::nullopt;
-    return Grip{hold->at, hold->spring.to, hold->spring.stiffness, hold->spring.damping};
+    return SpringAnchor{hold->at, hold->spring.to, hold->spring.stiffness, hold->spring.damping};
   });
 }
 
-std::optional<Stroke> Simulation::brush(std::string_view name) const {
-  return impl_->with_engine([&](auto& engine) -> std::optional<Stroke> {
+std::optional<VelocityBrush> Simulation::brush(std::string_view name) const {
+  return impl_->with_engine([&](auto& engine) -> std::optional<VelocityBrush> {
     const std::vector<ForceField>& fields = engine.world().fields;
     for (std::size_t f = scene().model().fields.size(); f < fields.size(); ++f)
       if (const Brush* b = std::get_if<Brush>(&fields[f].field); b && fields[f].name == name)
-        return Stroke{b->point, b->radius, b->velocity, b->rate};
+        return VelocityBrush{b->point, b->radius, b->velocity, b->rate};
     return std::nullopt;
   });
 }

@@ -26,11 +26,11 @@ class Stop final : public ToolOf<Stop> {
 
   // In a playground: what verbs do.
   void stop(PlayModel& side, const Action& a) {
-    const Stroke stroke{place_at(side, a, 0), size_at(side, a, 3), {}, rate * side.settings.strength};
+    const VelocityBrush stroke{place_at(side, a, 0), size_at(side, a, 3), {}, rate * side.settings.strength};
     side.before_edit("stop");
     side.simulation->set_brush("stop", stroke);
   }
-  void end(PlayModel& side) override { side.simulation->lift_brush("stop"); }
+  void end(PlayModel& side) override { side.simulation->remove_brush("stop"); }
   void reset(PlayModel& side) override { end(side); }
 
  private:

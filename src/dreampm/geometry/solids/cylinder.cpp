@@ -49,15 +49,16 @@ constexpr int rim_points = 24;
 class Cylinder final : public Solid {
  public:
   explicit Cylinder(const CylinderShape& form) : form_(form) {}
-  std::shared_ptr<const Region> region() const override { return std::make_shared<CylinderRegion>(form_.radius, form_.height); }
+  std::shared_ptr<const Region> region() const override {
+    return std::make_shared<CylinderRegion>(form_.radius, form_.height);
+  }
   double volume() const override { return std::numbers::pi * form_.radius * form_.radius * form_.height; }
   TriMesh mesh() const override { return cylinder_mesh(form_.radius, form_.height); }
   std::vector<Vec3d> corners() const override {
     std::vector<Vec3d> points;
     for (int n = 0; n < 2 * rim_points; ++n) {
       const double angle = std::numbers::pi * (n / 2) / (rim_points / 2);
-      points.push_back(
-          {form_.radius * std::cos(angle), (n % 2 - 0.5) * form_.height, form_.radius * std::sin(angle)});
+      points.push_back({form_.radius * std::cos(angle), (n % 2 - 0.5) * form_.height, form_.radius * std::sin(angle)});
     }
     return points;
   }

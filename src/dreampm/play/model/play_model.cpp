@@ -32,7 +32,7 @@ constexpr double slack_of_moving = 0.05;
 void loosen_surfaces(Simulation& simulation) {
   for (const std::string& name : simulation.names().colliders)
     if (const ColliderState c = simulation.collider(name); c.moves && !c.deforms)
-      simulation.set_slack(name, std::max(c.slack, slack_of_moving));
+      simulation.set_surface_tolerance(name, std::max(c.surface_tolerance, slack_of_moving));
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ class Grab final : public ToolOf<Grab> {
     const Vec3d at = place_at(side, a, 0);
     const double radius = size_at(side, a, 3);
     side.before_edit("grab");
-    side.simulation->let_go();
+    side.simulation->detach();
     pick_ = PickConstraint{at, at, radius, body_at(side, at), {}};
     if (holds_body()) pick_->at = side.simulation->collider(pick_->body).pose.inverse(at);
   }
@@ -60,8 +60,8 @@ class Grab final : public ToolOf<Grab> {
   void end(PlayModel& side) override { reset(side); }
   void reset(PlayModel& side) override {
     pick_.reset();
-    side.simulation->lift_brush("grab");
-    side.simulation->let_go();
+    side.simulation->remove_brush("grab");
+    side.simulation->detach();
   }
   bool holds_body() const override { return pick_ && !pick_->body.empty(); }
   void body_removed(std::string_view name) override {
@@ -101,8 +101,8 @@ class Grab final : public ToolOf<Grab> {
     if (const double far = length(pick_->middle - held); far > most_stretch)
       pick_->middle = held + (pick_->middle - held) * (most_stretch / far);
     const double frequency = spring_frequency * std::sqrt(side.settings.strength);
-    side.simulation->hold(pick_->body,
-                          {pick_->at, pick_->middle, body.mass * frequency * frequency, 2 * body.mass * frequency});
+    side.simulation->attach(pick_->body,
+                            {pick_->at, pick_->middle, body.mass * frequency * frequency, 2 * body.mass * frequency});
   }
 
   std::optional<PickConstraint> pick_;

@@ -33,10 +33,10 @@ class Pin final : public ToolOf<Pin> {
     if (is_off(a)) {
       if (all.empty()) throw InputError("pin: nothing is held");
       side.before_own_edit("pin off");
-      for (const auto& [name, stroke] : all) simulation.lift_brush(name);
+      for (const auto& [name, stroke] : all) simulation.remove_brush(name);
       return;
     }
-    const Stroke hold{place_at(side, a, 0), size_at(side, a, 3), {}, rate};
+    const VelocityBrush hold{place_at(side, a, 0), size_at(side, a, 3), {}, rate};
     const auto name = [](int number) { return fmt::format("{}{}", prefix, number); };
     int number = 1;
     while (std::any_of(all.begin(), all.end(), [&](const auto& pin) { return pin.first == name(number); })) ++number;
@@ -48,8 +48,8 @@ class Pin final : public ToolOf<Pin> {
   void load(Scene& scene) override {
     for (const model::ForceField& field : scene.model().fields)
       if (is_pin(field))
-        loaded_.emplace_back(field.name, Stroke{field.vectors.at("point"), field.numbers["radius"],
-                                                field.vectors.at("velocity"), field.numbers["rate"]});
+        loaded_.emplace_back(field.name, VelocityBrush{field.vectors.at("point"), field.numbers["radius"],
+                                                       field.vectors.at("velocity"), field.numbers["rate"]});
     if (loaded_.empty()) return;
     model::Scene bare = scene.model();
     std::erase_if(bare.fields, is_pin);
@@ -80,7 +80,7 @@ class Pin final : public ToolOf<Pin> {
   }
 
  private:
-  using Pins = std::vector<std::pair<std::string, Stroke>>;
+  using Pins = std::vector<std::pair<std::string, VelocityBrush>>;
   static constexpr std::string_view prefix = "pin-";
   /// 1/s: how fast what is pinned comes to rest.
   static constexpr double rate = 1e4;

@@ -56,7 +56,8 @@ class Push final : public ToolOf<Push> {
   }
 
   void push(PlayModel& side, const Action& a) {
-    const Stroke stroke{place_at(side, a, 0), size_at(side, a, 3), vector_at(a, 4), rate * side.settings.strength};
+    const VelocityBrush stroke{place_at(side, a, 0), size_at(side, a, 3), vector_at(a, 4),
+                               rate * side.settings.strength};
     // Strokes that follow one another are one edit.
     if (side.clock.played > pushed_ + same_edit) side.history.separate();
     side.before_edit("push");
@@ -69,23 +70,23 @@ class Push final : public ToolOf<Push> {
     // One cursor does one thing.
     for (const auto& other : side.tools)
       if (other->holds_body()) return;
-    side.simulation->let_go();
+    side.simulation->detach();
     for (const auto& [name, distance, is_rigid] : colliders_near(*side.simulation, stroke_->point, stroke_->radius)) {
       if (!is_rigid) continue;
       // As the brush does to matter: the velocity there comes to that of the stroke, at that rate.
       const ColliderState body = side.simulation->collider(name);
       const double own_rate = rate * side.settings.strength;
-      side.simulation->hold(name,
-                            {body.pose.inverse(stroke_->point), stroke_->point + stroke_->velocity * (1 / own_rate),
-                             body.mass * own_rate * own_rate, body.mass * own_rate});
+      side.simulation->attach(name,
+                              {body.pose.inverse(stroke_->point), stroke_->point + stroke_->velocity * (1 / own_rate),
+                               body.mass * own_rate * own_rate, body.mass * own_rate});
     }
   }
   void end(PlayModel& side) override { reset(side); }
   bool goes_on(std::string_view edit) const override { return edit == "push"; }
   void reset(PlayModel& side) override {
     stroke_.reset();
-    side.simulation->lift_brush("push");
-    side.simulation->let_go();
+    side.simulation->remove_brush("push");
+    side.simulation->detach();
   }
 
   Action random(RandomActions& dice, const Frame& frame) const override {
@@ -110,7 +111,7 @@ class Push final : public ToolOf<Push> {
   Vec3d cursor_velocity_{};  ///< m/s
   bool is_pushing_ = false;
   // In a playground.
-  std::optional<Stroke> stroke_;
+  std::optional<VelocityBrush> stroke_;
   double pushed_ = 0;  ///< s of playing: when it was pushed last
 };
 

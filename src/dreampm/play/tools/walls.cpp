@@ -218,7 +218,7 @@ class Walls final : public ToolOf<Walls> {
     model.before_edit("wall " + name);
     if (!has_slab(simulation, side)) try {
         simulation.add(slab_behind(space, side), model::Look::dielectric(1.5, {1, 0.5, 0.2}));
-        simulation.set_slack(collider_name(side), slack);
+        simulation.set_surface_tolerance(collider_name(side), slack);
       } catch (const InputError&) {
         if (model.history.edits() != edits) model.history.forget_edit();
         throw;
