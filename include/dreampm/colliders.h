@@ -39,9 +39,9 @@ struct ColliderState {
   bool deforms = false;                ///< true if its shape changes
 };
 
-/// The shape of a collider or rigid body where the solver has its surface, which is up to `surface_tolerance`
-/// cells off its pose. Stays as it was when it was asked for. Cheap to copy, safe to share between
-/// threads. Of use only where a Simulation gave it.
+/// The shape of a collider or rigid body where the solver has its surface, which is up to
+/// `surface_tolerance` cells off its pose. Stays as it was when it was asked for. Cheap to copy,
+/// safe to share between threads. Of use only where a Simulation gave it.
 class ColliderShape {
  public:
   const std::string& name() const;

@@ -67,8 +67,8 @@ enum class ForceMean { of_this_call, goes_on };
 /// of observers. In a scene with a fixed `time.dt`, what forms the grid (the next step, dt, hash,
 /// snapshot) throws InputError while an edit asks for shorter steps.
 ///
-/// What can be set can be read back, at once: `set_gravity` and `gravity`, `attach` and `anchor`. What
-/// takes a name throws InputError for one that is not there, unless it says what it does then.
+/// What can be set can be read back, at once: `set_gravity` and `gravity`, `attach` and `anchor`.
+/// What takes a name throws InputError for one that is not there, unless it says what it does then.
 class Simulation {
  public:
   /// Fills the bodies with particles. Throws InputError as `dreampm run` does for a scene that

@@ -138,8 +138,8 @@ TEST_F(Later, WhatRenderAndVideoRefuseIsKnownBefore) {
   refused("--set render.looks.water.absorption=[1e7,0,0]", "must be between 0 and 1e+06 1/m");
   refused("--set render.looks.water.type=spheres --set render.looks.water.radius=1e-50",
           "must be between 0.001 and 10 spacings");
-  // Two points for a double, and one for the picture.
-  refused("--set render.camera.from=[1,1,1] --set render.camera.to=[1.0000000001,1,1]",
+  // Two points whose distance underflows.
+  refused("--set render.camera.from=[0,0,0] --set render.camera.to=[1e-200,0,0]",
           "dam.yaml: error: render: the camera's `from` and `to` are the same point");
   refused(
       "--set space.max=[3000,0.4,0.3] --set space.walls.x_max.type=open --set space.spacing=0.01 --set "
@@ -155,8 +155,7 @@ TEST_F(Later, WhatIsJustWithinTheBoundsWorks) {
 }
 
 TEST_F(Later, ARunAloneOnlyWarnsOfThem) {
-  const Typed t =
-      type("run dam.yaml --frames 1 --set render.camera.from=[1,1,1] --set render.camera.to=[1.0000000001,1,1]");
+  const Typed t = type("run dam.yaml --frames 1 --set render.camera.from=[0,0,0] --set render.camera.to=[1e-200,0,0]");
   EXPECT_EQ(t.code, 0);
   EXPECT_THAT(t.err, HasSubstr("warning: a later stage will refuse this scene: render: the camera's"));
 }

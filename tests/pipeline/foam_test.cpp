@@ -41,7 +41,7 @@ foam: {amount: 0.02}
   StageResult make(const FrameRange& frames = {}) {
     const HostScope scope(&silent_);
     RunFolder run = open_run(folder_, Access::write);
-    return foam_stage(run, options);
+    return foam_stage(run, frames);
   }
   std::string bytes(int frame) const { return read_file(foam_file(open_run(folder_), frame)); }
   fs::path folder_;

@@ -77,7 +77,7 @@ void drops(Trial& t) {
   const auto fall = [](double drag) {
     return [drag](double radius) { return speed_after(FoamType::spray, 19, radius, 1.75, drag); };
   };
-  t.chose("single drops of spray, let go 19 m high, over 1.75 s: the speed of the last frame");
+  t.note_choice("single drops of spray, let go 19 m high, over 1.75 s: the speed of the last frame");
   // Drops above 2 mm are no spheres: a few parts in a hundred. A tenth is what spray has to have.
   t.at_most("fall of drops of 1 to 3 mm: farthest off the measured speed", worst(measured, fall(1)), 0.1, "%");
   t.control("half the drag", "fall of drops of 1 to 3 mm: farthest off the measured speed", worst(measured, fall(0.5)));
@@ -85,7 +85,7 @@ void drops(Trial& t) {
 
 void bubbles(Trial& t) {
   const Table exact = reference_table("clift_1978_bubbles.csv");
-  t.chose("single bubbles in 0.6 m of water at rest, over 0.5 s: the speed of the last frame");
+  t.note_choice("single bubbles in 0.6 m of water at rest, over 0.5 s: the speed of the last frame");
   const char* const name = "rise of bubbles of 2 to 10 mm: farthest off eq. 7-3";
   t.at_most(name, worst(exact, [](double r) { return speed_after(FoamType::bubble, 0.1f, r, 0.5); }), 0.01, "%");
   t.control("the radius taken for the diameter", name,

@@ -20,9 +20,11 @@ constexpr int tile = 16;
 /// Brighter samples are fireflies.
 constexpr float brightest = 10;
 
-/// Settings are floats: a bound is what a float makes of it.
+/// Some settings are floats: what a float makes of a bound is within it, too.
 void in_range(const char* what, double value, double low, double high) {
-  if (!(value >= static_cast<float>(low) && value <= static_cast<float>(high)))
+  const double least = std::min(low, double(static_cast<float>(low)));
+  const double most = std::max(high, double(static_cast<float>(high)));
+  if (!(value >= least && value <= most))
     fail_input("render: {} is {}; give one from {} to {}", what, value, low, high);
 }
 
