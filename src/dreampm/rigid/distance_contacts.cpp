@@ -2,7 +2,6 @@
 
 #include <array>
 #include <new>
-#include <numbers>
 
 #include "dreampm/contact/body_surface.h"
 #include "dreampm/geometry/solids/solid.h"

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 #include "dreampm/geometry/solids/solid.h"
 #include "dreampm/setup/place.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/solids/facets.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "dreampm/geometry/solids/facets.h"
 #include "dreampm/geometry/solids/region_parts.h"
