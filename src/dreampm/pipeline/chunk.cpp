@@ -8,6 +8,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
+#include "dreampm/pipeline/frame_stages.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -31,6 +32,12 @@ std::map<std::string, StageRecord> stages_of(const fs::path& chunk) {
     warn("{}; what these frames cost is not known", e.what());
     return {};
   }
+}
+
+/// True for a stage that the task that simulates makes of all frames.
+bool is_of_the_run(const std::string& name) {
+  const auto in_order = [&](const FrameStage& stage) { return stage.in_order && stage.name == name; };
+  return name == "simulate" || std::ranges::any_of(frame_stages(), in_order);
 }
 
 void add_stage(RunRecord& record, const std::string& name, const StageRecord& part) {
@@ -67,9 +74,10 @@ RunFolder open_chunk(const fs::path& folder, const FrameRange& frames) {
   using Locks = std::pair<std::shared_ptr<RunLock>, std::shared_ptr<RunLock>>;
   const auto both = std::make_shared<Locks>(shared, own);
   run.lock = std::shared_ptr<RunLock>(both, shared.get());
-  const auto simulated = run.record.stages["simulate"];
+  const std::map<std::string, StageRecord> of_run = run.record.stages;
   run.record.stages = stages_of(run.chunk);
-  run.record.stages["simulate"] = simulated;
+  for (const auto& [name, stage] : of_run)
+    if (is_of_the_run(name)) run.record.stages[name] = stage;
   return run;
 }
 
@@ -82,7 +90,7 @@ void fold_chunks(const fs::path& folder, RunRecord& record) {
     for (const auto& entry : fs::directory_iterator(chunk))
       if (entry.path().extension() == ".csv") stages.insert(entry.path().stem().string());
     for (const auto& [name, stage] : stages_of(chunk))
-      if (name != "simulate" && stage.seconds) add_stage(record, name, stage);
+      if (!is_of_the_run(name) && stage.seconds) add_stage(record, name, stage);
     if (fs::exists(chunk / "log.txt")) log += read_file(chunk / "log.txt");
   }
   for (const std::string& stage : stages) {
