@@ -69,6 +69,19 @@ TEST_F(Farm, AMakefileGivesTheFilmOfMakeAfterTheFolderMoved) {
   EXPECT_THAT(t.err, Not(HasSubstr("render: frame")));
 }
 
+TEST_F(Farm, FoamIsMadeByTheTaskThatSimulates) {
+  write("cube.yaml", std::string(cube_scene) + "foam: {amount: 100, scale: 0.05}\n");
+  ASSERT_EQ(type("farm cube.yaml --to make --chunk 2 --out job").code, 0);
+  ASSERT_EQ(type("make cube.yaml --out whole").code, 0);
+  const Typed t = make_job("job");
+  ASSERT_EQ(t.code, 0) << t.out << t.err;
+  EXPECT_TRUE(film("job") == film("whole")) << "the films differ";
+  const json run = record("job").at("stages").at("foam"), whole = record("whole").at("stages").at("foam");
+  EXPECT_EQ(run.at("frames"), 3);
+  EXPECT_EQ(run.at("foam"), whole.at("foam"));
+  EXPECT_EQ(read_file(folder / "job/foam/foam_000003.ply"), read_file(folder / "whole/foam/foam_000003.ply"));
+}
+
 TEST_F(Farm, APartIsMadeAloneAndAgainOnlyWhereSomethingIsGone) {
   Typed t = type("make cube.yaml --only frames --frames 1-2");
   EXPECT_EQ(t.code, 2);
