@@ -145,6 +145,35 @@ TEST_F(Draw, ColorsOfParticlesGoFirst) {
   EXPECT_GT(g, 2 * r);
 }
 
+/// A ball of foam smaller than a pixel is a share of it: of twice the radius it changes four times
+/// as much.
+TEST_F(Draw, FoamSmallerThanAPixelCoversItsShare) {
+  const std::vector<Vec3f> at{{0.0013f, 0.0011f, 0}};
+  const std::vector<std::array<std::uint8_t, 4>> white{{255, 255, 255, 200}};
+  Picture picture = empty_picture();
+  picture.theme = dark_theme();
+  const RgbImage before = drawn(picture, front_camera());
+  const auto change = [&](float radius) {
+    const std::vector<float> radii{radius};
+    ParticleBatch batch = red_balls(at, 1, "foam");
+    batch.value = radii, batch.color = white;
+    picture.particles = {&batch, 1};
+    const RgbImage after = drawn(picture, front_camera());
+    // In linear light, about: shaders encode by the root.
+    double sum = 0;
+    for (std::size_t i = 0; i < after.pixels.size(); ++i)
+      sum += std::pow(after.pixels[i] / 255.0, 2) - std::pow(before.pixels[i] / 255.0, 2);
+    return sum;
+  };
+  const double pixel = 2 * std::tan(0.5 * static_cast<double>(front_camera().view_angle)) *
+                       static_cast<double>(length(front_camera().eye)) / 256;
+  const double small = change(static_cast<float>(0.25 * pixel)), large = change(static_cast<float>(0.5 * pixel));
+  EXPECT_GT(small, 0.0);
+  // Blending is not in linear light, which makes faint ones fainter than their share.
+  EXPECT_GT(large, 2.5 * small);
+  EXPECT_LT(large, 16 * small);
+}
+
 TEST_F(Draw, WhatIsBehindTheEyeOrNotANumberIsLeftOut) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN(), inf = std::numeric_limits<float>::infinity();
   const std::vector<Vec3f> at{{0, 0, 4}, {nan, 0, 0}, {0, inf, 0}, {0, 0, -inf}, {0, 0, 2}, {1e30f, 1e30f, -1e30f}};

@@ -50,15 +50,15 @@ float MotionField::fill(const Vec3f& p) const {
   return sum;
 }
 
-Vec3f MotionField::gradient(const Vec3f& p) const {
-  const float h = 0.5f * cell_;
-  Vec3f g;
-  for (int a = 0; a < 3; ++a) {
-    Vec3f d;
-    d[a] = h;
-    g[a] = (fill(p + d) - fill(p - d)) / (2 * h);
-  }
-  return g;
+float MotionField::fill(const Vec3f& p, Vec3f& gradient) const {
+  float sum = 0;
+  gradient = {};
+  field_.about_with_slope(p, [&](const auto& b, int at, const Vec3f&, float w, const Vec3f& slope) {
+    const auto n = static_cast<std::size_t>(at);
+    const float share = std::min(1.0f, b[0][n] + b[4][n]);
+    sum += w * share, gradient += slope * share;
+  });
+  return sum;
 }
 
 Vec3f MotionField::velocity(const Vec3f& p, float& share) const {

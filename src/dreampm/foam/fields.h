@@ -15,8 +15,8 @@ class MotionField {
   MotionField(const FoamMatter& matter, std::span<const Obstacle> obstacles, const FoamRules& rules);
   /// The share of space that matter and obstacles take, about 1 inside, a half at a surface.
   float fill(const Vec3f& p) const;
-  /// Where it grows [1/m].
-  Vec3f gradient(const Vec3f& p) const;
+  /// The same, and where it grows [1/m].
+  float fill(const Vec3f& p, Vec3f& gradient) const;
   /// m/s; zero where no matter is near. `share`: of space, by matter alone.
   Vec3f velocity(const Vec3f& p, float& share) const;
   float cell() const { return cell_; }

@@ -18,6 +18,10 @@ enum class FoamType : std::uint8_t { spray, foam, bubble, dust };
 /// As files and pages have them, in the order of FoamType.
 inline constexpr std::array<std::string_view, 4> foam_type_names{"spray", "foam", "bubbles", "dust"};
 
+/// The share of its disc that one hides, in the order of FoamType: they let light through, the more
+/// the less they differ from what is around them.
+inline constexpr std::array<float, 4> foam_opacity{0.7f, 0.9f, 0.2f, 1.0f};
+
 /// A column each; all have size() rows. It is the whole state: the next one follows from it and
 /// from the matter of two frames.
 struct FoamParticles {

@@ -37,7 +37,7 @@ FoamRules foam_rules(const model::Foam& foam, FoamRules rules, double volume) {
   return rules;
 }
 
-FoamRules foam_rules(const model::Scene& scene, bool dust, const Vec3d& shift, double volume) {
+FoamRules foam_rules(const model::Foam& foam, const model::Scene& scene, bool dust, const Vec3d& shift, double volume) {
   FoamRules rules;
   rules.room.box = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.end() - shift)};
   for (std::size_t w = 0; w < 6; ++w) rules.room.is_wall[w] = scene.space.walls[w].type != WallType::open;
@@ -47,7 +47,7 @@ FoamRules foam_rules(const model::Scene& scene, bool dust, const Vec3d& shift, d
   rules.cell = static_cast<float>(std::max(2 * scene.space.spacing, scene.space.dx()));
   rules.seed = scene.seed;
   rules.shift = shift, rules.dust = dust;
-  return foam_rules(*scene.foam, rules, volume);
+  return foam_rules(foam, rules, volume);
 }
 
 bool limits_given(const model::Foam& foam) {

@@ -9,8 +9,8 @@ namespace dreampm {
 /// `volume` [m^3]: fills in scale, rate, radius, life and what else does not hang on limits.
 /// `rules` has room, gravity, spacing, cell, seed and shift.
 FoamRules foam_rules(const model::Foam& foam, FoamRules rules, double volume);
-/// The same of a scene. `shift`: where places of the matter count from.
-FoamRules foam_rules(const model::Scene& scene, bool dust, const Vec3d& shift, double volume);
+/// The same in the box of a scene. `shift`: where places of the matter count from.
+FoamRules foam_rules(const model::Foam& foam, const model::Scene& scene, bool dust, const Vec3d& shift, double volume);
 
 /// Whether every limit is given, so that no frame has to be looked at for them.
 bool limits_given(const model::Foam& foam);

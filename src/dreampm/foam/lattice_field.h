@@ -92,7 +92,7 @@ class LatticeField {
   template <class Visit>
   void at(Vec3i node, const Visit& visit) const {
     Vec3f sign{1, 1, 1};
-    for (int a = 0; a < 3; ++a) node[a] = axes_[static_cast<std::size_t>(a)].fold(node[a], sign[a]);
+    node = folded(node, sign);
     const std::int32_t b = index_.find(brick_of(node));
     if (b != surface::LatticeMap::kAbsent) visit(values_[static_cast<std::size_t>(b)], offset(node), sign);
   }
@@ -106,16 +106,31 @@ class LatticeField {
   /// weighs them.
   template <class Visit>
   void about(const Vec3f& p, const Visit& visit) const {
+    about_with_slope(
+        p, [&](const Brick& b, int n, const Vec3f& sign, float weight, const Vec3f&) { visit(b, n, sign, weight); });
+  }
+  /// The same with the gradient of the weight [1/m].
+  template <class Visit>
+  void about_with_slope(const Vec3f& p, const Visit& visit) const {
     Vec3i i;
     Vec3f f;
     for (int a = 0; a < 3; ++a) {
       const float c = axes_[static_cast<std::size_t>(a)].coordinate(p[a]), low = std::floor(std::clamp(c, -1e6f, 1e6f));
       i[a] = static_cast<std::int32_t>(low), f[a] = std::clamp(c - low, 0.0f, 1.0f);
     }
+    // Most of them lie in one brick, which is looked up once.
+    Vec3i in_brick;
+    std::int32_t found = surface::LatticeMap::kAbsent;
     for (int corner = 0; corner < 8; ++corner) {
       const int x = corner >> 2, y = corner >> 1 & 1, z = corner & 1;
-      const float w = (x ? f.x : 1 - f.x) * (y ? f.y : 1 - f.y) * (z ? f.z : 1 - f.z);
-      at(i + Vec3i{x, y, z}, [&](const Brick& b, int n, const Vec3f& sign) { visit(b, n, sign, w); });
+      const float wx = x ? f.x : 1 - f.x, wy = y ? f.y : 1 - f.y, wz = z ? f.z : 1 - f.z;
+      const Vec3f slope{(x ? wy : -wy) * wz * axes_[0].per_cell, (y ? wx : -wx) * wz * axes_[1].per_cell,
+                        (z ? wx : -wx) * wy * axes_[2].per_cell};
+      Vec3f sign{1, 1, 1};
+      const Vec3i node = folded(i + Vec3i{x, y, z}, sign), brick = brick_of(node);
+      if (corner == 0 || !(brick == in_brick)) found = index_.find(brick), in_brick = brick;
+      if (found != surface::LatticeMap::kAbsent)
+        visit(values_[static_cast<std::size_t>(found)], offset(node), sign, wx * wy * wz, slope);
     }
   }
 
@@ -124,10 +139,14 @@ class LatticeField {
 
  private:
   static constexpr int reach = side + 2;  ///< nodes that the particles of a brick reach, along an axis
-  using Arena = std::array<std::array<float, reach * reach * reach>, K>;
+  using Arena = std::array<std::array<float, K>, reach * reach * reach>;
 
   template <class Give>
   void scatter_one(const Vec3f& p, std::uint32_t i, const Vec3i& brick, const Give& give, Arena& to) const;
+  Vec3i folded(Vec3i node, Vec3f& sign) const {
+    for (int a = 0; a < 3; ++a) node[a] = axes_[static_cast<std::size_t>(a)].fold(node[a], sign[a]);
+    return node;
+  }
   Vec3i wrapped(Vec3i brick) const {
     for (int a = 0; a < 3; ++a)
       if (const NodeAxis& axis = axes_[static_cast<std::size_t>(a)]; axis.periodic) {
@@ -184,7 +203,7 @@ void LatticeField<K>::scatter_one(const Vec3f& p, std::uint32_t i, const Vec3i& 
         give(i, Vec3f{sign[0][x], sign[1][y], sign[2][z]}, Vec3f{away[0][x], away[1][y], away[2][z]}, numbers);
         const float w = weight[0][x] * weight[1][y] * weight[2][z];
         const auto n = static_cast<std::size_t>((at[0][x] * reach + at[1][y]) * reach + at[2][z]);
-        for (std::size_t k = 0; k < K; ++k) to[k][n] += w * numbers[k];
+        for (std::size_t k = 0; k < K; ++k) to[n][k] += w * numbers[k];
       }
 }
 
@@ -217,7 +236,7 @@ void LatticeField<K>::scatter(std::span<const Vec3f> points, const Give& give) {
   surface::LatticeMap arena_of(order.bricks.size());
   for (std::size_t b = 0; b < order.bricks.size(); ++b) arena_of.insert(order.bricks[b], static_cast<std::int32_t>(b));
   parallel_for(arenas.size(), 4, [&](std::size_t b) {
-    for (auto& values : arenas[b]) values.fill(0);
+    for (auto& numbers : arenas[b]) numbers.fill(0);
     for (std::uint32_t i = order.first[b]; i < order.first[b + 1]; ++i)
       scatter_one(points[order.order[i]], order.order[i], order.bricks[b], give, arenas[b]);
   });
@@ -232,7 +251,7 @@ void LatticeField<K>::scatter(std::span<const Vec3f> points, const Give& give) {
         const Vec3i local{(n >> 4) - side * off.x + 1, (n >> 2 & 3) - side * off.y + 1, (n & 3) - side * off.z + 1};
         if (std::min({local.x, local.y, local.z}) < 0 || std::max({local.x, local.y, local.z}) >= reach) continue;
         const auto m = static_cast<std::size_t>((local.x * reach + local.y) * reach + local.z);
-        for (std::size_t k = 0; k < K; ++k) values_[b][k][static_cast<std::size_t>(n)] += arena[k][m];
+        for (std::size_t k = 0; k < K; ++k) values_[b][k][static_cast<std::size_t>(n)] += arena[m][k];
       }
     }
   });

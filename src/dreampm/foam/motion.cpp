@@ -131,7 +131,9 @@ bool fly(One& one, float dt, const Between& between) {
     if (fill <= at_surface) continue;
     float share;
     const Vec3f flow = between.now.velocity(one.position, share);
-    if (dot(one.velocity - flow, between.now.gradient(one.position)) <= 0) continue;  // on its way out
+    Vec3f inward;
+    between.now.fill(one.position, inward);
+    if (dot(one.velocity - flow, inward) <= 0) continue;  // on its way out
     if (one.type == FoamType::spray) one.type = FoamType::foam;
     one.velocity = flow;
     break;
@@ -168,8 +170,8 @@ void settle(One& one, const Between& between) {
   }
   one.type = FoamType::foam;
   for (int k = 0; k < 3; ++k) {
-    const Vec3f g = now.gradient(one.position);
-    const float slope = length(g), off = (k == 0 ? fill : now.fill(one.position)) - at_surface;
+    Vec3f g;
+    const float off = now.fill(one.position, g) - at_surface, slope = length(g);
     if (slope * now.cell() < 0.05f || std::fabs(off) < 0.01f) break;
     one.position -= g * (std::clamp(off / slope, -0.3f * now.cell(), 0.3f * now.cell()) / slope);
   }

@@ -17,6 +17,7 @@ enum class Stage {
   solid,    ///< before the ground, with depth
   blended,  ///< over the ground, with depth and soft outlines
   liquid,   ///< over all opaque matter, which it may read through the framebuffer's textures
+  over,     ///< over liquids
 };
 
 /// A batch, and the vertex array that holds its particles: position, value and color are inputs 0,

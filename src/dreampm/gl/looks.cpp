@@ -80,6 +80,34 @@ class Spheres final : public Look {
   Program program_;
 };
 
+/// Balls of foam, white or as they are colored: each hides the share of its disc that the alpha of
+/// its color is, also where it is smaller than a pixel. `value` is the radius of each [m];
+/// without it they have that of the batch.
+class FoamBalls final : public Look {
+ public:
+  FoamBalls(std::string_view name, Stage stage) : name_(name), stage_(stage) {}
+  std::string_view name() const override { return name_; }
+  Stage stage() const override { return stage_; }
+  void draw(const FrameContext&, std::span<const BatchOnDevice> batches) override {
+    program_.use();
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    for (const BatchOnDevice& b : batches) {
+      set_particle_uniforms(program_, *b.batch, b.batch->value.empty() ? 1.0f : 0.0f);
+      b.vertices->bind();
+      glDrawArrays(GL_POINTS, 0, b.count);
+    }
+    glDisable(GL_BLEND);
+    glDepthMask(GL_TRUE);
+  }
+
+ private:
+  std::string_view name_;
+  Stage stage_;
+  Program program_{"foam.vert", "foam.frag"};
+};
+
 }  // namespace
 
 std::vector<std::unique_ptr<Look>> make_looks() {
@@ -91,6 +119,8 @@ std::vector<std::unique_ptr<Look>> make_looks() {
       std::make_unique<Spheres>(BallStyle{"grains", "spheres.vert", "grains.frag", 1.05f, 0.18f, 0.0f, true}));
   looks.push_back(make_skin());
   looks.push_back(make_water());
+  looks.push_back(std::make_unique<FoamBalls>("bubbles", Stage::blended));
+  looks.push_back(std::make_unique<FoamBalls>("foam", Stage::over));
   return looks;
 }
 

@@ -270,6 +270,9 @@ void Renderer::draw(const Picture& picture, const Camera& camera, const Framebuf
   impl_->draw_opaque(work);
   impl_->draw_occlusion(work);
   impl_->draw_liquids(work);
+  work.framebuffer.target().bind();
+  glEnable(GL_DEPTH_TEST);
+  impl_->draw_looks(work, Stage::over);
   impl_->lines.draw_marks(picture);
 
   glDisable(GL_DEPTH_TEST);

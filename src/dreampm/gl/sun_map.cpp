@@ -48,7 +48,7 @@ void SunMap::draw_depth(std::span<const BatchOnDevice> batches, std::span<const 
   glClear(GL_DEPTH_BUFFER_BIT);
   particles_.use();
   for (const BatchOnDevice& b : batches) {
-    if (b.thinned_count == 0) continue;
+    if (b.thinned_count == 0 || b.stage == Stage::over) continue;
     set_particle_uniforms(particles_, *b.batch, b.thinned_radius);
     particles_.set("darkness", b.stage == Stage::liquid ? clear_shadow : b.batch->opacity);
     b.thinned->bind();

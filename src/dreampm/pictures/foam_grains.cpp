@@ -10,9 +10,6 @@
 namespace dreampm {
 namespace {
 
-/// What a drop or a bubble hides, in the order of FoamType: they let light through, the more the
-/// less they differ from what is around them.
-constexpr std::array<float, 4> hides{0.7f, 0.9f, 0.2f, 1.0f};
 constexpr float least_radius = 1e-3f;  ///< of a pixel: smaller grains are left out
 
 Vec3f dust_color(const model::Scene& scene) {
@@ -40,7 +37,7 @@ FoamGrains foam_grains(const model::Scene& scene, const Vec3d& shift, const Foam
     const float wide = std::max(r, pixel);
     out.positions.push_back(foam.position[i]);
     out.radii.push_back(wide);
-    out.opacity.push_back(hides[static_cast<std::size_t>(foam.type[i])] * (r / wide) * (r / wide));
+    out.opacity.push_back(foam_opacity[static_cast<std::size_t>(foam.type[i])] * (r / wide) * (r / wide));
     out.colors.push_back(foam.type[i] == FoamType::dust ? dust : white);
   }
   return out;

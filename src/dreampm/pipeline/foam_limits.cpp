@@ -42,10 +42,10 @@ struct FoamObstacles::Made {
   Collider collider;
 };
 
-FoamObstacles::FoamObstacles(const RunFolder& run) : shift_(run.record.shift) {
+FoamObstacles::FoamObstacles(const model::Scene& scene, const Vec3d& shift) : shift_(shift) {
   const Meshes meshes(Meshes::Say::keep);
-  for (const model::Collider& c : run.scene.colliders)
-    if (!c.pin) made_.push_back(std::make_shared<const Made>(Made{c.name, make_collider(c, run.scene, 0, meshes)}));
+  for (const model::Collider& c : scene.colliders)
+    if (!c.pin) made_.push_back(std::make_shared<const Made>(Made{c.name, make_collider(c, scene, 0, meshes)}));
 }
 
 std::vector<foam::Obstacle> FoamObstacles::at(const FrameRecord& frame, const FrameRecord& before) const {
@@ -151,7 +151,8 @@ std::vector<FoamingKind> foaming_kinds(RunFolder& run, const FoamObstacles& obst
       if ((scene::foam_kind(run.scene.materials[std::size_t(m)]) == scene::FoamKind::dust) == dust)
         kind.materials.push_back(m);
     if (kind.materials.empty()) continue;
-    kind.rules = foam_rules(run.scene, dust, run.record.shift, most_volume(run, frames, kind.materials));
+    kind.rules =
+        foam_rules(*run.scene.foam, run.scene, dust, run.record.shift, most_volume(run, frames, kind.materials));
     kinds.push_back(std::move(kind));
   }
   const fs::path folder = run.folder / "foam";

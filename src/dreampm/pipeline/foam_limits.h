@@ -19,7 +19,9 @@ FoamingMatter foaming_matter(const RunFolder& run, int frame, const std::vector<
 /// Colliders and rigid bodies of a run, frame by frame.
 class FoamObstacles {
  public:
-  FoamObstacles(const RunFolder& run);
+  /// `shift` [m]: from which places of the matter count. Throws InputError for a model that cannot
+  /// be read.
+  FoamObstacles(const model::Scene& scene, const Vec3d& shift);
   /// As at a frame, and as at `before`.
   std::vector<foam::Obstacle> at(const FrameRecord& frame, const FrameRecord& before) const;
 

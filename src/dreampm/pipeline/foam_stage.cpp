@@ -162,7 +162,7 @@ std::string no_foam(const RunFolder& run, const std::vector<int>& frames) {
 StageResult foam_stage(RunFolder& run, const FrameRange& frames_asked) {
   if (!run.scene.foam || run.frames().empty()) return {};
   if (!run.lock) run.lock = std::make_shared<RunLock>(run.folder);
-  const FoamObstacles obstacles(run);
+  const FoamObstacles obstacles(run.scene, run.record.shift);
   std::map<std::string, double> found;
   std::vector<FoamingKind> kinds = foaming_kinds(run, obstacles, found);
   run.record.stages["foam"].found = found;

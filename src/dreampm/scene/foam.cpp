@@ -143,15 +143,16 @@ FoamKind foam_kind(const model::Material& material) {
   return material.type == "snow" || material.type == "sand" ? FoamKind::dust : FoamKind::none;
 }
 
+bool foams(const model::Foam& foam, const model::Material& material) {
+  const bool named = foam.of.empty() || std::find(foam.of.begin(), foam.of.end(), material.name) != foam.of.end();
+  return named && foam_kind(material) != FoamKind::none;
+}
+
 std::vector<int> foaming_materials(const model::Scene& scene) {
   std::vector<int> list;
   if (!scene.foam) return list;
-  const std::vector<std::string>& of = scene.foam->of;
-  for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-    const model::Material& material = scene.materials[m];
-    const bool named = of.empty() || std::find(of.begin(), of.end(), material.name) != of.end();
-    if (named && foam_kind(material) != FoamKind::none) list.push_back(static_cast<int>(m));
-  }
+  for (std::size_t m = 0; m < scene.materials.size(); ++m)
+    if (foams(*scene.foam, scene.materials[m])) list.push_back(static_cast<int>(m));
   return list;
 }
 

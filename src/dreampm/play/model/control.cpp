@@ -148,6 +148,8 @@ const std::vector<SettingControl>& setting_controls() {
           .help("material, or a number with its scale"),
       Row(&S::random_colors, "Picture", "random_colors", "Use Random Colors")
           .help("each particle in a color of its own"),
+      Row(&S::foam, "Picture", "foam", "Foam")
+          .help("spray, foam and bubbles of liquids, dust of snow and sand, by the scene's key foam"),
       Row(&S::dark, "Picture", "dark", "Dark").help("a dark background"),
       Row(&S::scale_bar, "Picture", "scale_bar", "Scale bar").help("a length, at the depth of the middle of the box"),
       Row(&S::outline, "Picture", "outline", "Edges of the box").help(""),

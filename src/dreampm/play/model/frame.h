@@ -37,6 +37,15 @@ struct MatterFrame {
   std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue alpha, where each has its own
 };
 
+/// Foam, one a ball.
+struct FoamSprites {
+  std::vector<Vec3f> position;                     ///< m
+  std::vector<float> radius;                       ///< m
+  std::vector<std::array<std::uint8_t, 4>> color;  ///< red green blue, and the share that it hides
+
+  std::size_t size() const { return position.size(); }
+};
+
 /// A collider or a rigid body.
 struct BodyFrame {
   std::string name;
@@ -109,6 +118,7 @@ struct Frame {
   double view_angle = 1;  ///< rad, from the lower to the upper edge
   double spacing = 0;     ///< m
   std::vector<MatterFrame> matter;
+  FoamSprites bubbles, foam;  ///< within liquids, and on and above them
   std::vector<BodyFrame> bodies;
   std::string value_label, value_unit;  ///< of the colors; empty: by material
   float value_min = 0, value_max = 1;

@@ -65,6 +65,7 @@ void PlayModel::enter(std::shared_ptr<const LoadedScene> what, Simulation its_si
   loaded = std::move(what);
   simulation.emplace(std::move(its_simulation));
   begin_anew<&PlayFieldUse::opens>(*this);
+  foam.forget();
   gravity = play_scene().scene.model().gravity;
   no_other = why_not_other(play_scene());
   list_controls();
@@ -95,6 +96,7 @@ void PlayModel::end_tools() {
   // The snapshot may be of a moment at which a tool worked.
   for (const auto& tool : tools) tool->reset(*this);
   arrivals.jump(*simulation);
+  foam.forget();
   gravity = simulation->scene().model().gravity;
   losses.forget_stream(*simulation);
 }
@@ -224,6 +226,10 @@ int PlayModel::tick(const Playground::Limit& limit) {
     taken = fail(before_steps, e.what());
   }
   arrivals.see(*simulation);
+  if (settings.foam)
+    foam.see(*simulation);
+  else
+    foam.forget();
   say_losses();
   clock.played += 1 / ticks_a_second;
   if (history.is_due(clock.played)) history.keep(moment());

@@ -10,6 +10,7 @@
 
 #include "dreampm/play/model/films.h"
 #include "dreampm/play/model/history.h"
+#include "dreampm/play/model/live_foam.h"
 #include "dreampm/play/model/play_state.h"
 #include "dreampm/play/model/playground.h"
 #include "dreampm/play/model/readback.h"
@@ -93,6 +94,7 @@ struct PlayModel : PlayState {
   History history;
   std::shared_ptr<Films> films = std::make_shared<Films>();
   FrameReader frames;
+  LiveFoam foam;  ///< begins anew at each jump
 
   // What follows from the scene, its materials and the solver.
   std::shared_ptr<const std::vector<ControlInfo>> controls;

@@ -183,6 +183,7 @@ void read_matter(const PlayModel& side, Frame& frame) {
     read_positions(*side.simulation, side.settings.random_colors, ahead, frame);
   else
     read_values(*side.simulation, *coloring, side.arrivals.ages, ahead, frame);
+  side.foam.show(side.simulation->time() + ahead, frame.bubbles, frame.foam);
 }
 
 /// Of the past, of films and of messages.

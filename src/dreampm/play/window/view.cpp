@@ -109,6 +109,13 @@ void View::draw(const Frame& frame, const gl::Camera& camera, const std::optiona
       batch.look = "spheres", batch.radius = m.look->ball * spacing;
     batches.push_back(batch);
   }
+  for (const auto& [sprites, look] : {std::pair{&frame.bubbles, "bubbles"}, std::pair{&frame.foam, "foam"}}) {
+    if (sprites->size() == 0) continue;
+    gl::ParticleBatch batch;
+    batch.position = sprites->position, batch.value = sprites->radius, batch.color = sprites->color;
+    batch.look = look;
+    batches.push_back(batch);
+  }
   std::vector<gl::MeshBatch> meshes;
   if (drawn_.size() < frame.bodies.size()) drawn_.resize(frame.bodies.size());
   for (const BodyFrame& b : frame.bodies) {
