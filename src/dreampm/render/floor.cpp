@@ -83,7 +83,7 @@ Vec3f FloorLight::irradiance(float x, float z, float ior) const {
 }
 
 template <class Land>
-void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) const {
+void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, float time, bool bend, Land&& land) const {
   struct Photon {
     Vec3f o, d, weight;
     Media media;
@@ -91,7 +91,8 @@ void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, 
   };
   std::array<Photon, 24> stack;
   std::size_t n = 0;
-  stack[n++] = {origin, direction, {1, 1, 1}, {}, 0};
+  Photon& first = stack[n++] = {origin, direction, {1, 1, 1}, {}, 0};
+  first.media.time = time;
   while (n > 0) {
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {
@@ -167,7 +168,8 @@ void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
           Vec3f{x, geometry_.floor_y(), z} + to_sun * ((top_ + 0.05f * scale_ - geometry_.floor_y()) / to_sun.y);
       if (!geometry_.meets_bounds(start, -to_sun)) continue;
       splat(x, z, Vec3f{-each, -each, -each});
-      follow(start, -to_sun, bend, [&](const Vec3f& p, const Vec3f& w) { splat(p.x, p.z, w * each); });
+      const float time = geometry_.moves() ? random.next() : 0.5f;
+      follow(start, -to_sun, time, bend, [&](const Vec3f& p, const Vec3f& w) { splat(p.x, p.z, w * each); });
     }
   });
   g.values.assign(cells, {});

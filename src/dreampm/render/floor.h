@@ -51,7 +51,7 @@ class FloorLight {
     Vec3f at(float u, float v) const;
   };
   template <class Land>
-  void follow(const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) const;
+  void follow(const Vec3f& origin, const Vec3f& direction, float time, bool bend, Land&& land) const;
   static void blur(Grid& grid, float sigma);
 
   const Geometry& geometry_;

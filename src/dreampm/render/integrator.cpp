@@ -60,12 +60,12 @@ struct Integrator::Stack {
   bool room() const { return size < paths.size(); }
 };
 
-Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const {
+Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time) const {
   const int limit = options_.physical ? most_bounces_physical : most_bounces;
   const bool glows = options_.looks && !options_.physical;
   Stack stack;
   Path& first = stack.paths[stack.size++];
-  first.o = o, first.d = d;
+  first.o = o, first.d = d, first.media.time = time;
   first.sun_disc = options_.sun_disc;
   first.polished = !options_.looks;
   Vec3f sum;
@@ -183,7 +183,7 @@ bool Integrator::at_rough(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   Vec3f color = hit.color;
   if (const auto* wood = std::get_if<Wood>(&geometry_.look(hit.object))) {
     const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
-    color = wood_color(*wood, geometry_.frame(hit.object), p, r.distance * options_.pixel_angle / slant);
+    color = wood_color(*wood, geometry_.frame(hit.object), p - hit.moved, r.distance * options_.pixel_angle / slant);
   }
   const Vec3f view = frame.local(-r.d);
   if (const SunSample sun = sunlight(p, n, face, r.media, random); largest(sun.irradiance) > 0)
