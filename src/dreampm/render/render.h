@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/io/exr.h"
 #include "dreampm/io/png.h"
 #include "dreampm/math/vec.h"
 #include "dreampm/model/render.h"
@@ -74,12 +75,6 @@ struct RenderSettings {
   float noise = 0.013f;           ///< tone-mapped error to stop at, > 0
   bool caustics = true;           ///< sunlight reaches the floor refracted; false: straight on, only dimmed
   std::uint64_t seed = 1;
-};
-
-/// Linear radiance, row by row from the top.
-struct Image {
-  int width = 0, height = 0;
-  std::vector<Vec3f> linear;
 };
 
 /// Called now and then from the calling thread with the share done, 0 to 1.
