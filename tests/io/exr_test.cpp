@@ -96,8 +96,8 @@ TEST(Exr, AnotherProgramReadsIt) {
     c.values.assign(c.values.size(), c.name == "R" ? 1.0f : c.name == "G" ? 0.5f : 0.0f);
   write_exr(folder / "a.exr", picture);
   // ffmpeg's own decoder, which shows linear light of 0.5 as 0.5^(1/2.2) = 0.730.
-  const std::string command = fmt::format("ffmpeg -v error -apply_trc gamma22 -i {0}/a.exr -pix_fmt rgb24 -y {0}/a.png",
-                                          folder.string());
+  const std::string command =
+      fmt::format("ffmpeg -v error -apply_trc gamma22 -i {0}/a.exr -pix_fmt rgb24 -y {0}/a.png", folder.string());
   ASSERT_EQ(std::system(command.c_str()), 0);
   const RgbImage back = read_png(folder / "a.png");
   ASSERT_EQ(back.width, 16);

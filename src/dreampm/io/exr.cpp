@@ -75,7 +75,8 @@ ExrPicture decode(Imf::InputFile& in, const std::string& name) {
   out.x = part.min.x - full.min.x, out.y = part.min.y - full.min.y;
   out.full_width = static_cast<int>(full_size[0]), out.full_height = static_cast<int>(full_size[1]);
   for (auto a = header.begin(); a != header.end(); ++a)
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute())) out.notes[a.name()] = text->value();
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&a.attribute()))
+      out.notes[a.name()] = text->value();
   const Imf::ChannelList& channels = header.channels();
   for (auto c = channels.begin(); c != channels.end(); ++c) {
     if (c.channel().xSampling != 1 || c.channel().ySampling != 1)

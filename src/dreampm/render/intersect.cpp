@@ -11,21 +11,6 @@
 #include "dreampm/render/wetting.h"
 
 namespace dreampm::trace {
-namespace {
-
-/// Of a look that is not clear.
-Vec3f color_of(const Look& look) {
-  return std::visit(
-      [](const auto& l) {
-        if constexpr (requires { l.color; })
-          return l.color;
-        else
-          return Vec3f{};
-      },
-      look);
-}
-
-}  // namespace
 
 struct Geometry::Embree {
   RTCDevice device = nullptr;
@@ -53,8 +38,8 @@ struct Geometry::Shape {
   std::vector<Vec3f> centers{};     ///< m, per grain, with their radii
   std::vector<float> radii{};
 
-  Vec3f color(const Look& look, std::size_t primitive, float u, float v) const {
-    if (colors.empty()) return color_of(look);
+  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
+    if (colors.empty()) return of_look;
     if (spheres) return colors[primitive];
     const auto& [a, b, c] = triangles[primitive];
     return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
@@ -78,6 +63,8 @@ Geometry::Geometry(const RenderScene& scene)
   embree_->scene = rtcNewScene(embree_->device);
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(traced(o.look));
+    interiors_.push_back(looks_.back()->interior());
+    colors_.push_back(looks_.back()->color());
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
     if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
@@ -129,7 +116,7 @@ void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int 
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
   shape.colors.assign(colors.begin(), colors.end());
-  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.triangles = mesh.triangles;
   shape.walls.resize(mesh.triangles.size());
@@ -173,7 +160,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
                object);
   if (n == 0) return;
   Shape shape;
-  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.spheres = true;
   shape.colors.assign(spheres.colors.begin(), spheres.colors.end());
@@ -285,14 +272,15 @@ bool Geometry::meets_bounds(const Vec3f& o, const Vec3f& d) const {
   return near <= far;
 }
 
-Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
+Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float reach) const {
   Hit hit;
+  hit.t = reach;
   int wall = 0;
   if (meets_bounds(o, d)) {
     RTCRayHit r{};
     r.ray.org_x = o.x, r.ray.org_y = o.y, r.ray.org_z = o.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
-    r.ray.tnear = epsilon_, r.ray.tfar = 1e9f;
+    r.ray.tnear = epsilon_, r.ray.tfar = reach;
     r.ray.mask = ~0u;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     first_hit(embree_->scene, r);
@@ -304,7 +292,8 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium) const {
       hit.object = shape.object;
       hit.normal = hit.geometric = normalized(Vec3f{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
       hit.back = dot(hit.geometric, d) > 0;
-      if (shape.kind == Kind::opaque) hit.color = shape.color(look(shape.object), primitive, r.hit.u, r.hit.v);
+      if (shape.kind == Kind::opaque)
+        hit.color = shape.color(colors_[static_cast<std::size_t>(shape.object)], primitive, r.hit.u, r.hit.v);
       if (!shape.walls.empty()) wall = shape.walls[primitive];
       if (!shape.opacity.empty()) {
         hit.grain = shape.radii[primitive], hit.opacity = shape.opacity[primitive],

@@ -8,6 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/camera.h"
 #include "dreampm/render/integrator.h"
+#include "dreampm/render/stage.h"
 #include "dreampm/render/tone.h"
 
 namespace dreampm {
@@ -138,6 +139,8 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   in_range("sun azimuth", scene.light.sun.azimuth, -3600, 3600);
   in_range("sun angle", scene.light.sun.angle, 0.1, 20);
   in_range("sun strength", scene.light.sun.strength, 0, 1e6);
+  if (!scene.light.environment.empty()) in_range("environment strength", scene.light.strength, 1e-6, 1e6);
+  in_range("environment turn", scene.light.turn, -3600, 3600);
   in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
@@ -148,8 +151,10 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
       fail_input("render: an object has no mesh");
     const model::Look& look = o.look;
     if (look.type == model::LookType::dielectric) {
-      in_range("ior", look.ior, 1.01, 3);
+      in_range("ior", look.ior, 1, 3);
       for (int k = 0; k < 3; ++k) in_range("absorption", look.absorption[k], 0, 1e6);
+      for (int k = 0; k < 3; ++k) in_range("scattering", look.scattering[k], 0, 1e6);
+      in_range("anisotropy", look.anisotropy, -0.95, 0.95);
       continue;
     }
     in_range("roughness", look.roughness, 0, 1);
@@ -163,17 +168,30 @@ Image render(const RenderScene& scene, const RenderSettings& settings, const Ren
   const auto report = [&](double done) {
     if (progress) progress(done);
   };
-  const Geometry geometry(scene);
-  const trace::Sky sky(scene.light, scene.physical);
-  const FloorPattern pattern(scene.basin);
   const trace::Camera camera(scene.camera, scene.basin, settings.width, settings.height);
+  RenderScene staged = scene;
+  const std::optional<TriMesh> paper = backdrop(scene, camera.eye());
+  if (paper) staged.objects.push_back({&*paper, paper_look(), {}});
+  const Geometry geometry(staged);
+  const trace::Sky sky(scene.light, scene.physical);
+  const FloorPattern pattern(scene.basin, scene.stage.place);
+  const Lamps lamps = lamps_of(scene);
   const float scale = std::max(scene.basin.size().x, scene.basin.size().z);
+  // Small lights are found by aiming at them, which a floor without baked light does.
+  const bool baked = sky.aimed_at() == nullptr && lamps.empty();
   FloorLight light(geometry, sky, scene.basin);
-  if (scene.stage.floor == model::Floor::tiles) {
+  PathOptions options;
+  options.physical = scene.physical;
+  options.pixel_angle = camera.pixel_angle();
+  if (baked) options.floor_light = &light;
+  if (!lamps.empty()) options.lamps = &lamps;
+  const Box3f clear = clear_bounds(scene, geometry);
+  std::optional<PhotonMap> caustics;
+  if (settings.caustics && !clear.empty() && (!baked || has_matte(scene, geometry)))
+    options.photons = &caustics.emplace(geometry, sky, lamps, clear, !baked, photons, settings.seed);
+  if (baked && scene.stage.floor == model::Floor::tiles) {
     light.bake_sun(settings.caustics, photons, settings.seed);
-    PathOptions gather;
-    gather.floor_light = &light;
-    gather.physical = scene.physical;
+    PathOptions gather = options;
     gather.looks = gather.sun_disc = false;
     gather.splits = 0;
     gather.pixel_angle = 0.02f;
@@ -184,10 +202,6 @@ Image render(const RenderScene& scene, const RenderSettings& settings, const Ren
     light.bake_sky(from, sky_rays, settings.seed + 1);
   }
   report(0.2);
-  PathOptions options;
-  options.floor_light = &light;
-  options.physical = scene.physical;
-  options.pixel_angle = camera.pixel_angle();
   const Integrator integrator(geometry, sky, pattern, scale, options);
   Film film(settings, !scene.physical);
   film.expose(integrator, camera, [&](double done) { report(0.2 + 0.4 * done); });
