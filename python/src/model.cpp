@@ -274,6 +274,8 @@ void render_structs(nb::module_& m) {
       .key("type", &Look::type)
       .key("ior", &Look::ior)
       .key("absorption", &Look::absorption)
+      .key("scattering", &Look::scattering)
+      .key("anisotropy", &Look::anisotropy)
       .key("color", &Look::color)
       .key("roughness", &Look::roughness)
       .key("ring", &Look::ring)
@@ -300,8 +302,15 @@ void render_structs(nb::module_& m) {
       .key("angle", &Sun::angle)
       .key("strength", &Sun::strength)
       .done();
-  Section<Light>(m, "Light", "Sky and sun.", "render.light.").key("sky", &Light::sky).key("sun", &Light::sun).done();
+  Section<Light>(m, "Light", "Sky and sun.", "render.light.")
+      .key("sky", &Light::sky)
+      .key("environment", &Light::environment)
+      .key("turn", &Light::turn)
+      .key("strength", &Light::strength)
+      .key("sun", &Light::sun)
+      .done();
   Section<SceneProps>(m, "SceneProps", "What stands around the matter.", "render.stage.")
+      .key("place", &SceneProps::place)
       .key("floor", &SceneProps::floor)
       .key("basin", &SceneProps::basin)
       .done();

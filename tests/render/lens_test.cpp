@@ -94,7 +94,8 @@ TEST(Lens, WhatIsOutOfFocusSpreadsAsTheThinLensSays) {
   // Squares of widths add up where an even disc is spread over another.
   EXPECT_NEAR(shadow_width(small_ball(0.4, 0)) / std::sqrt(of_ball * of_ball + filter), 1, 0.03) << "in focus";
   for (const float z : {1.0f, -2.0f}) {
-    const double depth = 4 - static_cast<double>(z), ball = of_ball * 4 / depth, spread = circle(0.4, 4, depth, 30, side);
+    const double depth = 4 - static_cast<double>(z), ball = of_ball * 4 / depth,
+                 spread = circle(0.4, 4, depth, 30, side);
     EXPECT_NEAR(shadow_width(small_ball(0.4, z)) / std::sqrt(ball * ball + spread * spread + filter), 1, 0.03) << z;
     EXPECT_NEAR(shadow_width(small_ball(0, z)) / std::sqrt(ball * ball + filter), 1, 0.03) << "without a lens, " << z;
   }

@@ -48,7 +48,8 @@ TEST(Crop, ItsPixelsAreThoseOfTheWholePicture) {
         ASSERT_EQ(there.at(0, y)[x], shown.at(box.x0, box.y0 + y)[x]) << x << " " << y;
   }
   settings.crop = PixelBox{0, 0, 97, 64};
-  EXPECT_THAT(test::refusal([&] { render_picture(still.scene, settings); }), HasSubstr("0,0,97,64 is no part of 96 x 64"));
+  EXPECT_THAT(test::refusal([&] { render_picture(still.scene, settings); }),
+              HasSubstr("0,0,97,64 is no part of 96 x 64"));
   settings.crop = PixelBox{5, 5, 5, 9};
   EXPECT_THROW(render_picture(still.scene, settings), InputError);
 }
@@ -121,7 +122,7 @@ TEST(Report, TheErrorIsThatOfMoreSamples) {
 }
 
 /// Where there is no denoiser its tests say so.
-#define NEED_DENOISER()                       \
+#define NEED_DENOISER() \
   if (!find_denoiser().found) GTEST_SKIP() << find_denoiser().text
 
 TEST(Denoiser, WithoutOneTheErrorSaysWhatToInstall) {

@@ -2,7 +2,6 @@
 
 #include "dreampm/render/color.h"
 #include "dreampm/render/interface.h"
-#include "dreampm/render/wood.h"
 
 namespace dreampm::trace {
 namespace {
@@ -27,8 +26,7 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
     }
     const Vec3f p = o + d * hit.t;
     way += hit.t;
-    if (const int medium = media.top(); medium != air)
-      weight = weight * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);
+    if (const Interior* in = geometry_.interior(media.top())) weight = weight * transmission(in->absorption, hit.t);
     if (hit.kind == Kind::pane || (hit.grain > 0 && hit.opacity < 0.5f)) {
       if (hit.kind == Kind::pane) weight = weight * pane_tint;
       o = p + d * geometry_.epsilon();
@@ -42,6 +40,12 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
     }
     if (hit.kind != Kind::dielectric) {
       out.albedo = weight * albedo_of(hit, p, d, way);
+      return out;
+    }
+    if (const Interior* in = geometry_.interior(hit.object); in->scatters && !hit.back) {
+      const Vec3f &s = in->scattering, &all = in->extinction;
+      const auto share = [](float a, float b) { return b > 0 ? a / b : 1; };
+      out.albedo = weight * Vec3f{share(s.x, all.x), share(s.y, all.y), share(s.z, all.z)};
       return out;
     }
     // Behind a clear surface lies what the picture mostly shows there.
@@ -62,10 +66,9 @@ Vec3f FirstHits::albedo_of(const Hit& hit, const Vec3f& p, const Vec3f& d, float
     const Vec3f far = at_most_one(sky_.radiance(normalized(Vec3f{d.x, 0, d.z}), false));
     return mix(pattern_.albedo(p.x, p.z, way * pixel_angle_ / std::max(0.05f, -d.y)), far, pattern_.fade(p.x, p.z));
   }
-  if (const auto* wood = std::get_if<Wood>(&geometry_.look(hit.object)))
-    return wood_color(*wood, geometry_.frame(hit.object), p - hit.moved,
-                      way * pixel_angle_ / std::max(0.1f, std::fabs(dot(hit.geometric, d))));
-  return hit.color;
+  if (hit.grain > 0) return hit.color;
+  const float footprint = way * pixel_angle_ / std::max(0.1f, std::fabs(dot(hit.geometric, d)));
+  return geometry_.look(hit.object).color_at({p - hit.moved, hit.color, geometry_.frame(hit.object), footprint});
 }
 
 }  // namespace dreampm::trace

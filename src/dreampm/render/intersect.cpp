@@ -30,6 +30,8 @@ Geometry::Geometry(const RenderScene& scene)
   embree_->scene = rtcNewScene(embree_->device);
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(traced(o.look));
+    interiors_.push_back(looks_.back()->interior());
+    colors_.push_back(looks_.back()->color());
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
     if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
@@ -71,14 +73,15 @@ Vec3f Geometry::velocity(const Hit& hit) const {
   return hit.shape == no_shape ? Vec3f{} : shapes_[hit.shape].velocity(hit.primitive, hit.u, hit.v);
 }
 
-Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time) const {
+Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach) const {
   Hit hit;
+  hit.t = reach;
   int wall = 0;
   if (meets_bounds(o, d)) {
     RTCRayHit r{};
     r.ray.org_x = o.x, r.ray.org_y = o.y, r.ray.org_z = o.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
-    r.ray.tnear = epsilon_, r.ray.tfar = 1e9f;
+    r.ray.tnear = epsilon_, r.ray.tfar = reach;
     r.ray.mask = ~0u, r.ray.time = time;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     first_hit(embree_->scene, r);
@@ -91,7 +94,8 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time) const
       hit.shape = r.hit.geomID, hit.primitive = r.hit.primID, hit.u = r.hit.u, hit.v = r.hit.v;
       hit.normal = hit.geometric = normalized(Vec3f{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
       hit.back = dot(hit.geometric, d) > 0;
-      if (shape.kind == Kind::opaque) hit.color = shape.color(look(shape.object), primitive, r.hit.u, r.hit.v);
+      if (shape.kind == Kind::opaque)
+        hit.color = shape.color(colors_[static_cast<std::size_t>(shape.object)], primitive, r.hit.u, r.hit.v);
       if (!shape.walls.empty()) wall = shape.walls[primitive];
       if (!shape.opacity.empty()) {
         hit.grain = shape.radii[primitive], hit.opacity = shape.opacity[primitive],
@@ -103,8 +107,8 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time) const
         const Vec3f n = normalized(shape.normal(primitive, r.hit.u, r.hit.v, time));
         if (dot(n, d) * dot(hit.geometric, d) > 0) hit.normal = n;  // else it would face the other way
       }
-      // Only a solid texture asks for it.
-      if (!shape.steps.empty() && std::holds_alternative<Wood>(look(shape.object)))
+      // Clear matter has no pattern that would move with it.
+      if (!shape.steps.empty() && shape.kind == Kind::opaque)
         hit.moved = shape.moved(primitive, r.hit.u, r.hit.v, time);
       if (wall == 3 && has_floor_) hit.kind = Kind::floor;  // y_min
       hit.glass = has_glass_ && wall != 0 && wall != 3 && wall != 4;

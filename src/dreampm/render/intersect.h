@@ -44,8 +44,8 @@ class Geometry {
   Geometry& operator=(const Geometry&) = delete;
 
   /// `medium`: the object that the ray runs in, or air. d has unit length. `time`: through the
-  /// exposure, 0 to 1.
-  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time) const;
+  /// exposure, 0 to 1. Nothing further than `reach` [m] is met.
+  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach = 1e9f) const;
   /// m/s, of what was hit, in the middle of the exposure.
   Vec3f velocity(const Hit& hit) const;
   /// True if anything is at different places within the exposure.
@@ -58,7 +58,11 @@ class Geometry {
   float epsilon() const { return epsilon_; }
   float floor_y() const { return floor_y_; }
   int objects() const { return static_cast<int>(looks_.size()); }
-  const Look& look(int object) const { return looks_[static_cast<std::size_t>(object)]; }
+  const Look& look(int object) const { return *looks_[static_cast<std::size_t>(object)]; }
+  /// Of an object that is clear or cloudy, else null; null for air.
+  const Interior* interior(int object) const {
+    return object == air ? nullptr : interiors_[static_cast<std::size_t>(object)];
+  }
   const TextureFrame& frame(int object) const { return frames_[static_cast<std::size_t>(object)]; }
   /// Of overlapping objects that of the highest rank is there.
   int rank(int object) const { return ranks_[static_cast<std::size_t>(object)]; }
@@ -81,8 +85,10 @@ class Geometry {
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
   std::unique_ptr<Embree> embree_;
-  std::vector<Shape> shapes_;  ///< by Embree's geometry number
-  std::vector<Look> looks_;    ///< these three by object
+  std::vector<Shape> shapes_;                       ///< by Embree's geometry number
+  std::vector<std::unique_ptr<const Look>> looks_;  ///< these five by object
+  std::vector<const Interior*> interiors_;
+  std::vector<Vec3f> colors_;
   std::vector<TextureFrame> frames_;
   std::vector<int> ranks_;
   Box3f basin_, bounds_;

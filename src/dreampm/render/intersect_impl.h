@@ -37,7 +37,7 @@ struct Geometry::Shape {
   std::vector<std::vector<Vec3f>> steps{};   ///< m, per step and vertex; or empty
   std::vector<std::vector<Vec3f>> turned{};  ///< normals per step and vertex; or empty
 
-  Vec3f color(const Look& look, std::size_t primitive, float u, float v) const;
+  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const;
   /// Of a triangle's vertices at a place on it.
   Vec3f mixed(const std::vector<Vec3f>& values, std::size_t primitive, float u, float v) const {
     const auto& [a, b, c] = triangles[primitive];

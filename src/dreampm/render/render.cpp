@@ -8,6 +8,7 @@
 #include "dreampm/render/denoise.h"
 #include "dreampm/render/film.h"
 #include "dreampm/render/integrator.h"
+#include "dreampm/render/stage.h"
 #include "dreampm/render/tone.h"
 
 namespace dreampm {
@@ -47,6 +48,36 @@ void check_lens(const model::Camera& camera) {
     fail_input("render: the camera's focus is not finite; give a point");
 }
 
+/// Lights the floor, by what `bounce` sees from it.
+void bake(FloorLight& light, const Integrator& bounce, bool moves, const RenderSettings& settings) {
+  light.bake_sun(settings.caustics, photons, settings.seed);
+  const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) {
+    const float time = moves ? random.next() : 0.5f;
+    return bounce.radiance(p, d, random, time);
+  };
+  // twice: the second round sees the light that the floor throws back on itself
+  light.bake_sky(from, sky_rays_first, settings.seed);
+  light.bake_sky(from, sky_rays, settings.seed + 1);
+}
+
+Picture exposed(const RenderSettings& settings, const Film::View& view, bool clamp, const RenderProgress& report) {
+  Picture out;
+  out.width = settings.width, out.height = settings.height;
+  out.box = settings.crop.value_or(PixelBox{0, 0, settings.width, settings.height});
+  out.traced = with_surroundings(out.box, settings);
+  Film film(settings, out.traced, view, clamp);
+  film.expose([&](double done) { report(0.2 + 0.4 * done); });
+  film.ask_more();
+  film.expose([&](double done) { report(0.6 + 0.4 * done); });
+  out.linear = film.linear();
+  out.report = film.report(out.box);
+  if (view.firsts != nullptr) out.surfaces = film.surfaces();
+  if (settings.denoise)
+    denoise(out.linear, out.surfaces.albedo, out.surfaces.normal, out.traced.width(), out.traced.height());
+  if (!settings.surfaces) out.surfaces = {};
+  return out;
+}
+
 }  // namespace
 
 void check_render(const RenderScene& scene, const RenderSettings& s) {
@@ -71,6 +102,8 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   in_range("sun azimuth", scene.light.sun.azimuth, -3600, 3600);
   in_range("sun angle", scene.light.sun.angle, 0.1, 20);
   in_range("sun strength", scene.light.sun.strength, 0, 1e6);
+  if (!scene.light.environment.empty()) in_range("environment strength", scene.light.strength, 1e-6, 1e6);
+  in_range("environment turn", scene.light.turn, -3600, 3600);
   in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
@@ -81,8 +114,10 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
       fail_input("render: an object has no mesh");
     const model::Look& look = o.look;
     if (look.type == model::LookType::dielectric) {
-      in_range("ior", look.ior, 1.01, 3);
+      in_range("ior", look.ior, 1, 3);
       for (int k = 0; k < 3; ++k) in_range("absorption", look.absorption[k], 0, 1e6);
+      for (int k = 0; k < 3; ++k) in_range("scattering", look.scattering[k], 0, 1e6);
+      in_range("anisotropy", look.anisotropy, -0.95, 0.95);
       continue;
     }
     in_range("roughness", look.roughness, 0, 1);
@@ -97,57 +132,40 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
   const auto report = [&](double done) {
     if (progress) progress(done);
   };
-  const Geometry geometry(scene);
-  const trace::Sky sky(scene.light, scene.physical);
-  const FloorPattern pattern(scene.basin);
   const trace::Camera camera(scene.camera, scene.basin, settings.width, settings.height);
+  RenderScene staged = scene;
+  const std::optional<TriMesh> paper = backdrop(scene, camera.eye());
+  if (paper) staged.objects.push_back({&*paper, paper_look(), {}});
+  const Geometry geometry(staged);
+  const trace::Sky sky(scene.light, scene.physical);
+  const FloorPattern pattern(scene.basin, scene.stage.place);
+  const Lamps lamps = lamps_of(scene);
   const float scale = std::max(scene.basin.size().x, scene.basin.size().z);
+  // Small lights are found by aiming at them, which a floor without baked light does.
+  const bool baked = sky.aimed_at() == nullptr && lamps.empty();
   FloorLight light(geometry, sky, scene.basin);
-  if (scene.stage.floor == model::Floor::tiles) {
-    light.bake_sun(settings.caustics, photons, settings.seed);
-    PathOptions gather;
-    gather.floor_light = &light;
-    gather.physical = scene.physical;
+  PathOptions options;
+  options.physical = scene.physical;
+  options.pixel_angle = camera.pixel_angle();
+  if (baked) options.floor_light = &light;
+  if (!lamps.empty()) options.lamps = &lamps;
+  const Box3f clear = clear_bounds(scene, geometry);
+  std::optional<PhotonMap> caustics;
+  if (settings.caustics && !clear.empty() && (!baked || has_matte(scene, geometry)))
+    options.photons = &caustics.emplace(geometry, sky, lamps, clear, !baked, photons, settings.seed);
+  if (baked && scene.stage.floor == model::Floor::tiles) {
+    PathOptions gather = options;
     gather.looks = gather.sun_disc = false;
     gather.splits = 0;
     gather.pixel_angle = 0.02f;
-    const Integrator bounce(geometry, sky, pattern, scale, gather);
-    const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) {
-      const float time = geometry.moves() ? random.next() : 0.5f;
-      return bounce.radiance(p, d, random, time);
-    };
-    // twice: the second round sees the light that the floor throws back on itself
-    light.bake_sky(from, sky_rays_first, settings.seed);
-    light.bake_sky(from, sky_rays, settings.seed + 1);
+    bake(light, Integrator(geometry, sky, pattern, scale, gather), geometry.moves(), settings);
   }
   report(0.2);
-  PathOptions options;
-  options.floor_light = &light;
-  options.physical = scene.physical;
-  options.pixel_angle = camera.pixel_angle();
   const Integrator integrator(geometry, sky, pattern, scale, options);
   const FirstHits firsts(geometry, sky, pattern, camera.pixel_angle());
-  Picture out{settings.width,
-              settings.height,
-              settings.crop.value_or(PixelBox{0, 0, settings.width, settings.height}),
-              {},
-              {},
-              {},
-              {}};
-  out.traced = with_surroundings(out.box, settings);
   Film::View view{integrator, camera, nullptr, geometry.moves(), scene.frame_time};
   if (settings.denoise || settings.surfaces) view.firsts = &firsts;
-  Film film(settings, out.traced, view, !scene.physical);
-  film.expose([&](double done) { report(0.2 + 0.4 * done); });
-  film.ask_more();
-  film.expose([&](double done) { report(0.6 + 0.4 * done); });
-  out.linear = film.linear();
-  out.report = film.report(out.box);
-  if (view.firsts != nullptr) out.surfaces = film.surfaces();
-  if (settings.denoise)
-    denoise(out.linear, out.surfaces.albedo, out.surfaces.normal, out.traced.width(), out.traced.height());
-  if (!settings.surfaces) out.surfaces = {};
-  return out;
+  return exposed(settings, view, !scene.physical, report);
 }
 
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {

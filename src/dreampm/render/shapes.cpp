@@ -7,18 +7,6 @@
 namespace dreampm::trace {
 namespace {
 
-/// Of a look that is not clear.
-Vec3f color_of(const Look& look) {
-  return std::visit(
-      [](const auto& l) {
-        if constexpr (requires { l.color; })
-          return l.color;
-        else
-          return Vec3f{};
-      },
-      look);
-}
-
 std::vector<Vec3f> velocities_of(std::span<const Vec3f> given, std::size_t n, int object) {
   if (!given.empty() && given.size() != n)
     fail_input("render: {} velocities for {} balls (object {}); give one each, or none", given.size(), n, object);
@@ -36,8 +24,8 @@ std::pair<std::size_t, float> step_at(float time, std::size_t steps) {
 
 }  // namespace
 
-Vec3f Geometry::Shape::color(const Look& look, std::size_t primitive, float u, float v) const {
-  if (colors.empty()) return color_of(look);
+Vec3f Geometry::Shape::color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
+  if (colors.empty()) return of_look;
   return spheres ? colors[primitive] : mixed(colors, primitive, u, v);
 }
 
@@ -88,7 +76,7 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
   const bool given = mesh.normals.size() == vertices;
   Shape shape;
   shape.colors.assign(colors.begin(), colors.end());
-  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.triangles = mesh.triangles;
   shape.walls.resize(mesh.triangles.size());
@@ -114,9 +102,8 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
   const std::size_t steps = std::max<std::size_t>(1, shape.steps.size());
   rtcSetGeometryTimeStepCount(g, static_cast<unsigned>(steps));
   for (std::size_t k = 0; k < steps; ++k) {
-    auto* points =
-        static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(k),
-                                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
+    auto* points = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(k),
+                                                               RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
     if (points == nullptr) embree_->check("reserving a mesh");
     std::ranges::copy(shape.steps.empty() ? mesh.vertices : shape.steps[k], points);
   }
@@ -195,7 +182,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
                object);
   if (n == 0) return;
   Shape shape;
-  shape.kind = std::holds_alternative<Dielectric>(looks_.back()) ? Kind::dielectric : Kind::opaque;
+  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.spheres = true;
   shape.colors.assign(spheres.colors.begin(), spheres.colors.end());

@@ -67,7 +67,8 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
   check_cuts(in, root.find("bodies"), scene);
-  read_looks(in, root.find("render"), scene);
+  if (const YamlNode* render = root.find("render")) finish_light(*render, scene.render);
+  read_looks(in, root, scene);
   check_shutter(in, root.find("render"), scene);
   check_foam(in, root.find("foam"), scene);
   if (scene.output.folder.empty())
