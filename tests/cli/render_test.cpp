@@ -26,7 +26,7 @@ class RenderVerb : public Typing {
           "velocity: [0, -2, 0]}}\n"
           "colliders: {bar: {shape: {box: {size: [0.3, 0.05, 0.05]}, center: [0.75, 0.2, 0.25]}, "
           "motion: {spin: [0, 0, 8]}}}\n"
-          "render: {size: [96, 64], samples: 8, camera: {shutter: 0.5, fstop: 1.4}}\n");
+          "render: {size: [96, 64], samples: 8, stage: {floor: none}, camera: {shutter: 0.5, fstop: 1.4}}\n");
     const Typed run = type("run fall.yaml");
     ASSERT_EQ(run.code, 0) << run.err;
     ASSERT_EQ(type("surface out/fall").code, 0);

@@ -131,6 +131,7 @@ TEST(Motion, WaterStaysWithinItsPanes) {
   RenderScene scene;
   scene.basin = {{0, 0, 0}, {1, 1, 1}};
   scene.frame_time = 1;
+  scene.stage.floor = model::Floor::none;
   const auto picture = [&](const Vec3f& velocity, double shutter) {
     water.velocities.assign(water.vertices.size(), velocity);
     scene.objects = {{&water, model::Look::dielectric(), {}}};
