@@ -36,7 +36,8 @@ install(FILES ${config} ${PROJECT_BINARY_DIR}/generated/dreampmConfigVersion.cma
 # For pkg-config --static, and for --libs alone where there is no shared library.
 set(static_libs "-lfmt -lspdlog -ltbb -lz -lpugixml -lpng -lyaml-cpp -lopenvdb -lcrypto -lembree${embree_VERSION_MAJOR}")
 pkg_check_modules(DM_IMATH QUIET Imath)  # which OpenVDB's headers call
-foreach(libraries HDF5_C_LIBRARIES DM_BULLET_LINK_LIBRARIES DM_IMATH_LINK_LIBRARIES)
+pkg_check_modules(DM_OPENEXR QUIET OpenEXR)
+foreach(libraries HDF5_C_LIBRARIES DM_OPENEXR_LINK_LIBRARIES DM_BULLET_LINK_LIBRARIES DM_IMATH_LINK_LIBRARIES)
   list(JOIN ${libraries} " " paths)
   string(APPEND static_libs " ${paths}")
 endforeach()

@@ -274,6 +274,8 @@ void render_structs(nb::module_& m) {
       .key("type", &Look::type)
       .key("ior", &Look::ior)
       .key("absorption", &Look::absorption)
+      .key("scattering", &Look::scattering)
+      .key("anisotropy", &Look::anisotropy)
       .key("color", &Look::color)
       .key("roughness", &Look::roughness)
       .key("ring", &Look::ring)
@@ -288,6 +290,11 @@ void render_structs(nb::module_& m) {
       .key("fov", &Camera::fov)
       .key("from_", &Camera::from, "from")
       .key("to", &Camera::to)
+      .key("shutter", &Camera::shutter)
+      .key("aperture", &Camera::aperture)
+      .key("fstop", &Camera::fstop)
+      .key("focus", &Camera::focus)
+      .own("focus_point", &Camera::focus_point, "A point [m] of the plane that is sharp, in place of its distance.")
       .done();
   Section<Sun>(m, "Sun", "The sun.", "render.light.sun.")
       .key("elevation", &Sun::elevation)
@@ -295,8 +302,15 @@ void render_structs(nb::module_& m) {
       .key("angle", &Sun::angle)
       .key("strength", &Sun::strength)
       .done();
-  Section<Light>(m, "Light", "Sky and sun.", "render.light.").key("sky", &Light::sky).key("sun", &Light::sun).done();
+  Section<Light>(m, "Light", "Sky and sun.", "render.light.")
+      .key("sky", &Light::sky)
+      .key("environment", &Light::environment)
+      .key("turn", &Light::turn)
+      .key("strength", &Light::strength)
+      .key("sun", &Light::sun)
+      .done();
   Section<SceneProps>(m, "SceneProps", "What stands around the matter.", "render.stage.")
+      .key("place", &SceneProps::place)
       .key("floor", &SceneProps::floor)
       .key("basin", &SceneProps::basin)
       .done();
@@ -312,6 +326,8 @@ void render_structs(nb::module_& m) {
       .key("noise", &Render::noise)
       .key("caustics", &Render::caustics)
       .key("physical", &Render::physical)
+      .key("denoise", &Render::denoise)
+      .key("format", &Render::format)
       .key("camera", &Render::camera)
       .key("light", &Render::light)
       .key("stage", &Render::stage)

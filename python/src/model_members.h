@@ -19,15 +19,23 @@ struct WordsOf<Pattern> {
 };
 template <>
 struct WordsOf<SkyKind> {
-  static constexpr std::array<std::string_view, 2> words{"clear", "studio"};
+  static constexpr std::array<std::string_view, 3> words{"clear", "studio", "night"};
 };
 template <>
 struct WordsOf<model::SurfaceFormat> {
   static constexpr std::array<std::string_view, 3> words{"ply", "obj", "vdb"};
 };
 template <>
+struct WordsOf<model::PictureFormat> {
+  static constexpr std::array<std::string_view, 2> words{"png", "exr"};
+};
+template <>
 struct WordsOf<model::LookType> {
-  static constexpr std::array<std::string_view, 6> words{"dielectric", "opaque", "spheres", "wood", "metal", "plastic"};
+  static constexpr auto words = model::look_type_names;
+};
+template <>
+struct WordsOf<model::Place> {
+  static constexpr std::array<std::string_view, 3> words{"terrace", "studio", "night"};
 };
 template <>
 struct WordsOf<model::Floor> {

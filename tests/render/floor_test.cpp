@@ -15,7 +15,7 @@ using namespace trace;
 RenderScene stage() {
   RenderScene s;
   s.basin = {{0, 0, 0}, {1, 0.5f, 0.6f}};
-  s.stage = {model::Floor::tiles, model::Basin::none};
+  s.stage = {.floor = model::Floor::tiles, .basin = model::Basin::none};
   s.physical = true;
   return s;
 }

@@ -56,7 +56,7 @@ inline RenderScene before_uniform_sky(const RenderObject& object, float fov) {
   s.camera.fit_basin = false;
   s.camera.from = {0, 0, 4}, s.camera.to = {0, 0, 0}, s.camera.fov = fov;
   s.light.sun.strength = 0, s.light.sky = SkyKind::uniform;
-  s.stage = {model::Floor::none, model::Basin::none};
+  s.stage = {.floor = model::Floor::none, .basin = model::Basin::none};
   s.physical = true;
   return s;
 }

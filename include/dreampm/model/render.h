@@ -13,7 +13,8 @@ namespace dreampm {
 
 enum class SkyKind {
   clear,    ///< blue, with soft clouds and a glow round the sun
-  studio,   ///< dark, with a soft light above
+  studio,   ///< soft boxes in a gray room
+  night,    ///< dark
   uniform,  ///< radiance 1 everywhere: for tests; no scene asks for it
 };
 
@@ -40,12 +41,16 @@ struct Surface {
 };
 
 enum class LookType { dielectric, opaque, spheres, wood, metal, plastic };
+inline constexpr std::array<std::string_view, 6> look_type_names{"dielectric", "opaque", "spheres",
+                                                                 "wood",       "metal",  "plastic"};
 
 /// The appearance of a material, collider or rigid body.
 struct Look {
   LookType type = LookType::dielectric;
-  double ior = 1.333;               ///< dielectric, 1.01 to 3
+  double ior = 1.333;               ///< dielectric, 1 to 3
   Vec3d absorption{6.0, 1.7, 0.5};  ///< dielectric: 1/m, red green blue
+  Vec3d scattering{};               ///< dielectric: 1/m, red green blue; 0: clear
+  double anisotropy = 0;            ///< dielectric: mean cosine of scattering, -0.95 to 0.95
   Vec3d color{0.93, 0.33, 0.23};    ///< all but dielectric: sRGB 0..1
   double roughness = 1;          ///< opaque: of its coat, 0 polished, 1 no coat; wood, metal, plastic: of the surface
   std::optional<double> ring{};  ///< wood: m from ring to ring; absent: by the size of the body
@@ -53,10 +58,11 @@ struct Look {
   double radius = 0.5;           ///< spheres: in units of the spacing
   bool operator==(const Look&) const = default;
 
-  /// Clear matter, such as water or glass.
-  static Look dielectric(double ior = 1.333, const Vec3d& absorption = {6.0, 1.7, 0.5}) {
+  /// Clear matter, such as water or glass; cloudy where it scatters, as milk.
+  static Look dielectric(double ior = 1.333, const Vec3d& absorption = {6.0, 1.7, 0.5}, const Vec3d& scattering = {},
+                         double anisotropy = 0) {
     Look look;
-    look.ior = ior, look.absorption = absorption;
+    look.ior = ior, look.absorption = absorption, look.scattering = scattering, look.anisotropy = anisotropy;
     return look;
   }
   static Look opaque(const Vec3d& color, double roughness = 1) { return of(LookType::opaque, color, roughness); }
@@ -85,6 +91,13 @@ struct Camera {
   double fill = 0.84;     ///< share of the frame that the box fills, with fit_basin
   double fov = 34;        ///< degrees, vertical
   Vec3d from{}, to{};     ///< m, without fit_basin
+  /// The share of the time from frame to frame through which each picture is exposed, 0 to 1, half
+  /// of it before the frame and half after; 0: an instant.
+  double shutter = 0;
+  double aperture = 0;                 ///< m, the diameter of the lens; 0: a pinhole, all is sharp
+  std::optional<double> fstop{};       ///< the f-number, in place of the diameter, of film 24 mm high
+  std::optional<double> focus{};       ///< m, from the eye to the plane that is sharp, along the line of sight
+  std::optional<Vec3d> focus_point{};  ///< m: a point of that plane. Both absent: the middle of the box, or `to`
   bool operator==(const Camera&) const = default;
 };
 
@@ -97,15 +110,27 @@ struct Sun {
 
 struct Light {
   SkyKind sky = SkyKind::clear;
+  /// A picture of all around in place of the sky: an OpenEXR file of equal steps of longitude and
+  /// latitude, its middle towards +x. Empty: none.
+  std::string environment;
+  double turn = 0;      ///< degrees, of the environment about +y
+  double strength = 1;  ///< by which the environment's radiance is multiplied, > 0
   Sun sun;
   bool operator==(const Light&) const = default;
 };
 
+/// The place where it all stands: what its floor is of, and lamps and backdrops.
+enum class Place {
+  terrace,  ///< tiles to the horizon
+  studio,   ///< a paper backdrop that bends up behind
+  night,    ///< dark tiles between four lamps
+};
 enum class Floor { tiles, none };
 enum class Basin { glass, none };
 
 /// The objects around the matter in a picture.
 struct SceneProps {
+  Place place = Place::terrace;
   Floor floor = Floor::tiles;
   Basin basin = Basin::glass;
   bool operator==(const SceneProps&) const = default;
@@ -120,6 +145,8 @@ struct Cut {
   bool operator==(const Cut&) const = default;
 };
 
+enum class PictureFormat { png, exr };
+
 /// The settings of pictures.
 struct Render {
   int width = 1920, height = 1080;  ///< pixels, both even
@@ -127,12 +154,14 @@ struct Render {
   double noise = 0.009;             ///< tone-mapped error to stop at
   bool caustics = true;
   bool physical = false;  ///< leaves out what is only look
+  bool denoise = false;   ///< Open Image Denoise takes the noise out
+  PictureFormat format = PictureFormat::png;
   Camera camera;
   Light light;
   SceneProps stage;
   std::optional<Cut> cut;
-  /// Looks by name. A material or collider without one gets water's where it is a liquid, else a
-  /// matte color.
+  /// Looks by name. Where the scene gives none, honey and snow have their own, other liquids that
+  /// of water, and all else a matte color.
   std::map<std::string, Look> looks;
   bool operator==(const Render&) const = default;
 };

@@ -38,10 +38,15 @@ struct Frame {
   Vec3f local(const Vec3f& d) const { return {dot(d, u), dot(d, v), dot(d, n)}; }
 };
 
-/// A direction about frame.n with density cos/pi.
-inline Vec3f cosine_direction(const Frame& frame, float a, float b) {
+/// A direction about z with density cos/pi.
+inline Vec3f cosine_hemisphere(float a, float b) {
   const float r = std::sqrt(a), phi = 2 * pi * b;
-  return frame.world(r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - a)));
+  return {r * std::cos(phi), r * std::sin(phi), std::sqrt(std::max(0.0f, 1 - a))};
+}
+/// The same about frame.n.
+inline Vec3f cosine_direction(const Frame& frame, float a, float b) {
+  const Vec3f d = cosine_hemisphere(a, b);
+  return frame.world(d.x, d.y, d.z);
 }
 
 /// Share of unpolarised light that a smooth interface reflects. `cos_in` >= 0 in the first medium,

@@ -4,25 +4,29 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
-#include "dreampm/render/interface.h"
+#include "dreampm/render/photons.h"
 
 namespace dreampm::trace {
 namespace {
 
 const Vec3f light_tile{0.80f, 0.75f, 0.67f}, dark_tile{0.66f, 0.60f, 0.52f}, grout_color{0.45f, 0.42f, 0.38f};
 constexpr std::size_t photon_parts = 4;  // fixed, so that sums do not depend on the threads
-constexpr float weakest_photon = 0.02f;
 
 }  // namespace
 
-FloorPattern::FloorPattern(const Box3f& basin)
-    : scale_(std::max(basin.size().x, basin.size().z)), middle_x_(basin.center().x), middle_z_(basin.center().z) {
+FloorPattern::FloorPattern(const Box3f& basin, model::Place place)
+    : scale_(std::max(basin.size().x, basin.size().z)),
+      middle_x_(basin.center().x),
+      middle_z_(basin.center().z),
+      has_tiles_(place != model::Place::studio),
+      shade_(place == model::Place::night ? 0.45f : 1) {
   tile_ = 0.11f * std::exp2(std::round(std::log2(scale_)));
   grout_ = tile_ * (0.005f / 0.11f);
   grain_ = 10 / tile_;
 }
 
 Vec3f FloorPattern::albedo(float x, float z, float footprint) const {
+  if (!has_tiles_) return studio_paper;
   const float u = x / tile_, v = z / tile_, iu = std::floor(u), iv = std::floor(v);
   const int i = static_cast<int>(iu), j = static_cast<int>(iv);
   const float edge_u = std::min(u - iu, 1 - (u - iu)) * tile_, edge_v = std::min(v - iv, 1 - (v - iv)) * tile_;
@@ -35,7 +39,7 @@ Vec3f FloorPattern::albedo(float x, float z, float footprint) const {
   const float on_tile =
       std::min(smoothstep(half - soft, half + soft, edge_u), smoothstep(half - soft, half + soft, edge_v));
   const float grout = mix(1 - on_tile, 1.4f * grout_ / tile_, far);
-  return mix(c, grout_color, grout);
+  return mix(c, grout_color, grout) * shade_;
 }
 
 float FloorPattern::fade(float x, float z) const {
@@ -82,57 +86,6 @@ Vec3f FloorLight::irradiance(float x, float z, float ior) const {
   return share * sky_.sun_irradiance() * (sky_.has_sun() ? sky_.sun_direction().y / (ior * ior) : 0.0f) + sky;
 }
 
-template <class Land>
-void FloorLight::follow(const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) const {
-  struct Photon {
-    Vec3f o, d, weight;
-    Media media;
-    int bounces;
-  };
-  std::array<Photon, 24> stack;
-  std::size_t n = 0;
-  stack[n++] = {origin, direction, {1, 1, 1}, {}, 0};
-  while (n > 0) {
-    Photon r = stack[--n];
-    for (; r.bounces < 12; ++r.bounces) {
-      const Hit hit = cast_visible(geometry_, r.o, r.d, r.media);
-      if (hit.grain > 0) {  // what it does not cover goes on
-        r.weight *= 1 - hit.opacity;
-        if (largest(r.weight) < weakest_photon) break;
-        r.o = r.o + r.d * (hit.t + geometry_.epsilon()), --r.bounces;
-        continue;
-      }
-      if (hit.kind == Kind::none || hit.kind == Kind::opaque) break;
-      if (const int medium = r.media.top(); medium != air)
-        r.weight = r.weight * transmission(std::get<Dielectric>(geometry_.look(medium)).absorption, hit.t);
-      const Vec3f p = r.o + r.d * hit.t;
-      if (hit.kind == Kind::floor) {
-        land(p, r.weight);
-        break;
-      }
-      if (largest(r.weight) < weakest_photon) break;
-      if (hit.kind == Kind::bar) {
-        if (!hit.back) r.weight = r.weight * bar_shade;
-        r.o = p;
-        continue;
-      }
-      const Split s = split_light(geometry_, hit, r.d, r.media);
-      const Vec3f above = p + s.side * geometry_.epsilon(), below = p - s.side * geometry_.epsilon();
-      if (s.reflectance >= 0.999f && bend) {
-        r.o = above, r.d = s.reflected;
-        continue;
-      }
-      if (bend && s.reflectance * largest(r.weight) > weakest_photon && n < stack.size())
-        stack[n++] = {above, s.reflected, r.weight * s.reflectance, r.media, r.bounces + 1};
-      // straight on, a ray that would be reflected totally is dimmed as one that enters
-      const float lost = s.reflectance >= 0.999f ? 0.06f : s.reflectance;
-      r.weight = r.weight * s.tint * (1 - lost);
-      r.o = below, r.media = s.refracted_media;
-      if (bend) r.d = s.refracted;
-    }
-  }
-}
-
 void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
   if (!sky_.has_sun()) return;
   const float width = x1_ - x0_, depth = z1_ - z0_;
@@ -167,7 +120,11 @@ void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
           Vec3f{x, geometry_.floor_y(), z} + to_sun * ((top_ + 0.05f * scale_ - geometry_.floor_y()) / to_sun.y);
       if (!geometry_.meets_bounds(start, -to_sun)) continue;
       splat(x, z, Vec3f{-each, -each, -each});
-      follow(start, -to_sun, bend, [&](const Vec3f& p, const Vec3f& w) { splat(p.x, p.z, w * each); });
+      const float time = geometry_.moves() ? random.next() : 0.5f;
+      follow_photon(geometry_, start, -to_sun, time, bend,
+                    [&](const Hit& hit, const Vec3f& p, const Vec3f&, const Vec3f& w, bool) {
+                      if (hit.kind == Kind::floor) splat(p.x, p.z, w * each);
+                    });
     }
   });
   g.values.assign(cells, {});

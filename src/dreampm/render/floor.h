@@ -10,11 +10,14 @@
 
 namespace dreampm::trace {
 
+/// Of the studio's backdrop.
+inline constexpr Vec3f studio_paper{0.72f, 0.72f, 0.72f};
+
 /// The floor's reflectance.
 class FloorPattern {
  public:
-  /// Tiles of 11 cm for a basin about 1 m long, doubled or halved for others.
-  explicit FloorPattern(const Box3f& basin);
+  /// Tiles of 11 cm for a basin about 1 m long, doubled or halved for others; paper in a studio.
+  explicit FloorPattern(const Box3f& basin, model::Place place = model::Place::terrace);
   /// At (x, z) [m], averaged over `footprint` [m].
   Vec3f albedo(float x, float z, float footprint) const;
   /// How far the floor has faded into the horizon there, 0 to 1.
@@ -22,6 +25,8 @@ class FloorPattern {
 
  private:
   float tile_, grout_, grain_, scale_, middle_x_, middle_z_;
+  bool has_tiles_;
+  float shade_;  ///< of dark tiles, below 1
 };
 
 /// Irradiance of the floor, on grids round the basin; open floor beyond.
@@ -50,8 +55,6 @@ class FloorLight {
     std::vector<Vec3f> values;
     Vec3f at(float u, float v) const;
   };
-  template <class Land>
-  void follow(const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) const;
   static void blur(Grid& grid, float sigma);
 
   const Geometry& geometry_;

@@ -43,7 +43,7 @@ void Media::remove(int object) {
 }
 
 float ior(const Geometry& geometry, const Media& media) {
-  return media.top() == air ? 1 : std::get<Dielectric>(geometry.look(media.top())).ior;
+  return media.top() == air ? 1 : geometry.interior(media.top())->ior;
 }
 
 Media across(const Geometry& geometry, const Hit& hit, Media media) {
@@ -54,7 +54,7 @@ Media across(const Geometry& geometry, const Hit& hit, Media media) {
   return media;
 }
 
-void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit) {
+void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit, float reach) {
   constexpr int most_hidden = 64;
   float before = 0;
   for (int hidden = 0; hit.object != air && hit.kind != Kind::opaque; ++hidden) {
@@ -69,7 +69,7 @@ void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media
     media = across(geometry, hit, media);
     before += hit.t;
     o = o + d * hit.t;
-    hit = geometry.cast(o, d, media.top());
+    hit = geometry.cast(o, d, media.top(), media.time, reach - before);
   }
   hit.t += before;
 }

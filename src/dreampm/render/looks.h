@@ -1,43 +1,61 @@
-// A look of the model as the tracer uses it: linear, in floats, a type a kind.
+// A look of the model as the tracer uses it. A kind of look is a class in a file of its own, and a
+// row of DM_LOOKS.
 #pragma once
-#include <variant>
+#include <memory>
+#include <vector>
 
-#include "dreampm/math/vec.h"
-#include "dreampm/model/render.h"
+#include "dreampm/render/bsdf.h"
+#include "dreampm/render/render.h"
 
 namespace dreampm::trace {
 
-/// A smooth interface around a clear medium that absorbs by Beer-Lambert: water, honey, glass.
-struct Dielectric {
-  float ior = 1.333f;                  ///< 1.01 to 3
-  Vec3f absorption{6.0f, 1.7f, 0.5f};  ///< 1/m for red, green, blue; >= 0
-  Vec3f glow{0.03f, 0.22f, 0.34f};     ///< radiance scattered inside a thick layer: a look, left out if physical
+/// What light meets within clear or cloudy matter.
+struct Interior {
+  float ior = 1;
+  Vec3f absorption, scattering;  ///< 1/m for red, green, blue; >= 0
+  float anisotropy = 0;          ///< mean cosine of scattering (Henyey and Greenstein 1941)
+  Vec3f glow;                    ///< radiance of a thick layer: a look, left out if physical
+  Vec3f extinction;              ///< 1/m, the sum of the two
+  bool scatters = false;
 };
-/// A matte surface, under a clear coat where roughness < 1.
-struct Opaque {
-  Vec3f color{0.8f, 0.8f, 0.8f};  ///< linear reflectance, 0 to 1
-  float roughness = 1;            ///< of the coat, 0 (polished) to 1 (no coat)
-};
-/// Wood under a satin varnish: rings about a pith, and fibers along it, in the frame of its object.
-struct Wood {
-  Vec3f color{0.51f, 0.25f, 0.09f};  ///< linear reflectance of the early wood, 0 to 1; late wood is darker
-  float roughness = 0.45f;           ///< of the varnish, 0 to 1
-  float ring = 0;                    ///< m from ring to ring; 0: by the size of the object
-};
-/// A rough conductor.
-struct Metal {
-  Vec3f color{0.56f, 0.57f, 0.58f};  ///< linear reflectance square to the surface, 0 to 1
-  float roughness = 0.3f;            ///< 0 (a mirror) to 1
-};
-/// A matte base under a clear, rough coat.
-struct Plastic {
-  Vec3f color{0.34f, 0.01f, 0.01f};  ///< linear reflectance of the base, 0 to 1
-  float roughness = 0.2f;            ///< of the coat, 0 (polished) to 1
-};
-using Look = std::variant<Dielectric, Opaque, Wood, Metal, Plastic>;
 
-/// As the look's type says; spheres are opaque, without a coat. A dielectric glows as its
-/// absorption asks; a clear one does not.
-Look traced(const model::Look& look);
+/// A point of a surface.
+struct SurfacePoint {
+  Vec3f position;             ///< m
+  Vec3f color;                ///< that of the object there, linear
+  const TextureFrame& frame;  ///< of the object
+  float footprint;            ///< m: the size of what is averaged
+};
+
+class Look {
+ public:
+  explicit Look(const model::Look& model) : model_(model) {}
+  virtual ~Look() = default;
+  Look(const Look&) = delete;
+  Look& operator=(const Look&) = delete;
+  /// What it is of; absent where light does not go in. One with an interior has a smooth surface,
+  /// others have a bsdf.
+  virtual const Interior* interior() const { return nullptr; }
+  /// How the surface scatters, whatever its color, in a medium of that index.
+  virtual std::unique_ptr<const Bsdf> bsdf(float outer_ior) const = 0;
+  /// Linear; of the whole object.
+  virtual Vec3f color() const;
+  /// The same at a point, for looks with a pattern.
+  virtual Vec3f color_at(const SurfacePoint& point) const { return point.color; }
+  const model::Look& model() const { return model_; }
+
+ private:
+  model::Look model_;
+};
+
+/// The kinds of looks, in the order of model::LookType. For a row NAME a file of this folder
+/// defines make_NAME.
+#define DM_LOOKS(LOOK) LOOK(dielectric) LOOK(opaque) LOOK(spheres) LOOK(wood) LOOK(metal) LOOK(plastic)
+#define DM_DECLARE_LOOK(name) std::unique_ptr<const Look> make_##name(const model::Look& look);
+DM_LOOKS(DM_DECLARE_LOOK)
+#undef DM_DECLARE_LOOK
+
+/// As the look's type says.
+std::unique_ptr<const Look> traced(const model::Look& look);
 
 }  // namespace dreampm::trace

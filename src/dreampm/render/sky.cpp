@@ -1,8 +1,11 @@
 #include "dreampm/render/sky.h"
 
+#include <array>
 #include <cstddef>
 
+#include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/io/exr.h"
 #include "dreampm/render/color.h"
 
 namespace dreampm::trace {
@@ -27,6 +30,69 @@ std::pair<float, float> clouds(const Vec3f& d) {
   return {smoothstep(0.47f, 0.72f, sum) * smoothstep(0.02f, 0.22f, d.y), 1.15f - 0.35f * smoothstep(0.5f, 0.9f, sum)};
 }
 
+/// A soft box: a rectangle of light, seen from the middle of the room.
+struct SoftBox {
+  Vec3f towards;     ///< its middle
+  float wide, high;  ///< half of its sides over its distance
+  Vec3f radiance;
+};
+
+/// Soft boxes in a gray room: a large one as the key, a strip to the side, one above, and a narrow
+/// one behind for the rims.
+Environment studio_boxes() {
+  static const std::array<SoftBox, 4> boxes{{{{-0.70f, 0.75f, 0.55f}, 0.42f, 0.42f, {7.5f, 7.2f, 6.8f}},
+                                             {{0.85f, 0.35f, 0.75f}, 0.14f, 0.60f, {5.0f, 5.4f, 6.0f}},
+                                             {{0.05f, 1.0f, 0.0f}, 0.60f, 0.35f, {4.5f, 4.5f, 4.5f}},
+                                             {{0.55f, 0.50f, -0.85f}, 0.45f, 0.10f, {8.0f, 8.4f, 9.0f}}}};
+  constexpr int width = 1024, height = 512;
+  std::vector<Vec3f> pixels(static_cast<std::size_t>(width) * height);
+  parallel_for(height, 8, [&](std::size_t y) {
+    const float theta = pi * (static_cast<float>(y) + 0.5f) / height;
+    for (int x = 0; x < width; ++x) {
+      const float phi = 2 * pi * ((static_cast<float>(x) + 0.5f) / width - 0.5f);
+      const Vec3f d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
+      // the room: lighter towards its floor
+      Vec3f c = mix(Vec3f{0.62f, 0.62f, 0.63f}, Vec3f{0.10f, 0.105f, 0.115f}, smoothstep(-0.1f, 0.8f, d.y));
+      for (const SoftBox& box : boxes) {
+        const Vec3f n = normalized(box.towards),
+                    side = normalized(cross(std::fabs(n.y) < 0.95f ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1}, n)),
+                    up = cross(n, side);
+        const float far = dot(d, n);
+        if (far <= 0) continue;
+        const float u = std::fabs(dot(d, side) / far) / box.wide, v = std::fabs(dot(d, up) / far) / box.high;
+        const float lit = (1 - smoothstep(0.94f, 1.02f, u)) * (1 - smoothstep(0.94f, 1.02f, v));
+        c = mix(c, box.radiance * (1.1f - 0.25f * (u * u + v * v)), lit);
+      }
+      pixels[y * width + static_cast<std::size_t>(x)] = c;
+    }
+  });
+  return {width, height, std::move(pixels)};
+}
+
+/// What a moonless sky over a town leaves.
+Vec3f night(const Vec3f& d) {
+  return mix(Vec3f{0.020f, 0.022f, 0.034f}, Vec3f{0.003f, 0.005f, 0.013f}, smoothstep(0, 0.6f, d.y));
+}
+
+Environment read_environment(const model::Light& light) {
+  Image image = read_exr_colors(light.environment);
+  if (image.width != 2 * image.height)
+    fail_input("{}: {} x {} pixels; an environment is twice as wide as high: longitude across, latitude down",
+               light.environment, image.width, image.height);
+  const auto strength = static_cast<float>(light.strength);
+  double sum = 0;
+  for (std::size_t i = 0; i < image.linear.size(); ++i) {
+    Vec3f& c = image.linear[i];
+    if (!is_finite(c))
+      fail_input("{}: pixel ({}, {}) is not finite", light.environment, i % static_cast<std::size_t>(image.width),
+                 i / static_cast<std::size_t>(image.width));
+    c = max(c, Vec3f{}) * strength;  // resampling leaves little negative ones
+    sum += static_cast<double>(luminance(c));
+  }
+  if (!(sum > 0)) fail_input("{}: black all over; an environment has light", light.environment);
+  return {image.width, image.height, std::move(image.linear), static_cast<float>(light.turn) * degree};
+}
+
 }  // namespace
 
 Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {
@@ -41,25 +107,36 @@ Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(
   const float solid_angle = 2 * pi * (1 - std::cos(disc_angle_));
   disc_radiance_ = physical ? sun_irradiance_ * (1 / solid_angle) : sun_color * (soft_disc * strength / 8);
   if (physical) disc_angle_ = -disc_angle_;  // a hard edge
-  if (kind_ != SkyKind::uniform) {
-    table_.resize(static_cast<std::size_t>(columns) * rows);
-    parallel_for(rows, 4, [&](std::size_t y) {
-      const float v = (static_cast<float>(y) + 0.5f) / rows, up = v * v, side = std::sqrt(std::max(0.0f, 1 - up * up));
-      for (int x = 0; x < columns; ++x) {
-        const float a = 2 * pi * ((static_cast<float>(x) + 0.5f) / columns - 0.5f);
-        const Vec3f d{side * std::cos(a), up, side * std::sin(a)};
-        table_[y * columns + static_cast<std::size_t>(x)] = kind_ == SkyKind::clear ? clear(d) : studio(d);
-      }
-    });
+  if (!light.environment.empty())
+    environment_ = read_environment(light);
+  else if (kind_ == SkyKind::studio)
+    environment_ = studio_boxes();
+  else if (kind_ != SkyKind::uniform)
+    fill_table();
+  if (environment_) {
+    open_ = environment_->irradiance({0, 1, 0});
+    return;
   }
   const int n = 64;
   const Frame ground({0, 1, 0});
   Vec3d sum;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j)
-      sum += static_cast<Vec3d>(radiance(
-          cosine_direction(ground, (static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n), false));
+      sum += static_cast<Vec3d>(without_sun(
+          cosine_direction(ground, (static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n)));
   open_ = static_cast<Vec3f>(sum * (std::numbers::pi / (n * n)));
+}
+
+void Sky::fill_table() {
+  table_.resize(static_cast<std::size_t>(columns) * rows);
+  parallel_for(rows, 4, [&](std::size_t y) {
+    const float v = (static_cast<float>(y) + 0.5f) / rows, up = v * v, side = std::sqrt(std::max(0.0f, 1 - up * up));
+    for (int x = 0; x < columns; ++x) {
+      const float a = 2 * pi * ((static_cast<float>(x) + 0.5f) / columns - 0.5f);
+      const Vec3f d{side * std::cos(a), up, side * std::sin(a)};
+      table_[y * columns + static_cast<std::size_t>(x)] = kind_ == SkyKind::clear ? clear(d) : night(d);
+    }
+  });
 }
 
 Vec3f Sky::clear(const Vec3f& d) const {
@@ -75,26 +152,22 @@ Vec3f Sky::clear(const Vec3f& d) const {
   return c * sky_gain;
 }
 
-Vec3f Sky::studio(const Vec3f& d) const {
-  const Vec3f key = normalized(Vec3f{-0.35f, 0.85f, -0.40f}), rim = normalized(Vec3f{-0.6f, 0.30f, 0.75f});
-  return Vec3f{0.020f, 0.024f, 0.032f} * (1 + 2 * d.y) +
-         Vec3f{3.2f, 3.1f, 2.9f} * smoothstep(0.80f, 0.93f, dot(d, key)) +
-         Vec3f{0.9f, 1.2f, 1.6f} * smoothstep(0.93f, 0.97f, dot(d, rim));
+Vec3f Sky::without_sun(const Vec3f& d) const {
+  if (environment_) return environment_->radiance(d);
+  if (kind_ == SkyKind::uniform) return {1, 1, 1};
+  float u = (std::atan2(d.z, d.x) / (2 * pi) + 0.5f) * columns - 0.5f;
+  if (u < 0) u += columns;
+  const float v = std::clamp(std::sqrt(std::max(0.0f, d.y)) * rows - 0.5f, 0.0f, rows - 1.001f);
+  const int x = static_cast<int>(u), y = static_cast<int>(v);
+  const Vec3f* low = &table_[static_cast<std::size_t>(y) * columns];
+  const Vec3f* high = low + columns;
+  const int x0 = x % columns, x1 = (x + 1) % columns;
+  const float fx = u - static_cast<float>(x);
+  return mix(mix(low[x0], low[x1], fx), mix(high[x0], high[x1], fx), v - static_cast<float>(y));
 }
 
 Vec3f Sky::radiance(const Vec3f& d, bool with_sun) const {
-  Vec3f c{1, 1, 1};
-  if (kind_ != SkyKind::uniform) {
-    float u = (std::atan2(d.z, d.x) / (2 * pi) + 0.5f) * columns - 0.5f;
-    if (u < 0) u += columns;
-    const float v = std::clamp(std::sqrt(std::max(0.0f, d.y)) * rows - 0.5f, 0.0f, rows - 1.001f);
-    const int x = static_cast<int>(u), y = static_cast<int>(v);
-    const Vec3f* low = &table_[static_cast<std::size_t>(y) * columns];
-    const Vec3f* high = low + columns;
-    const int x0 = x % columns, x1 = (x + 1) % columns;
-    const float fx = u - static_cast<float>(x);
-    c = mix(mix(low[x0], low[x1], fx), mix(high[x0], high[x1], fx), v - static_cast<float>(y));
-  }
+  Vec3f c = without_sun(d);
   if (with_sun && has_sun_) {
     const float k = dot(d, sun_);
     if (k > disc_cos_) {

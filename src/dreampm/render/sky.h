@@ -1,7 +1,9 @@
 // Sun and sky: what a ray that leaves the scene sees.
 #pragma once
+#include <optional>
 #include <vector>
 
+#include "dreampm/render/environment.h"
 #include "dreampm/render/render.h"
 
 namespace dreampm::trace {
@@ -9,10 +11,13 @@ namespace dreampm::trace {
 class Sky {
  public:
   /// `physical` gives the disc its true radiance; else it is dimmed to what the tone curve can
-  /// show.
+  /// show. Reads the light's environment: throws InputError naming the file where it is missing,
+  /// damaged, or not twice as wide as high.
   Sky(const model::Light& light, bool physical);
   /// Radiance from direction d (unit length).
   Vec3f radiance(const Vec3f& d, bool with_sun) const;
+  /// The sky as a picture, where it has small or bright parts that paths must aim at; else null.
+  const Environment* aimed_at() const { return environment_ ? &*environment_ : nullptr; }
   /// Irradiance of open, level ground by the sky alone.
   const Vec3f& open_irradiance() const { return open_; }
   bool has_sun() const { return has_sun_; }
@@ -26,13 +31,15 @@ class Sky {
  private:
   static constexpr int columns = 1024, rows = 256;
   Vec3f clear(const Vec3f& d) const;
-  Vec3f studio(const Vec3f& d) const;
+  Vec3f without_sun(const Vec3f& d) const;
+  void fill_table();
 
   SkyKind kind_;
   bool has_sun_;
   Vec3f sun_, sun_irradiance_, disc_radiance_, open_;
   float disc_angle_, disc_cos_, shadow_tan_;
-  std::vector<Vec3f> table_;
+  std::vector<Vec3f> table_;                ///< of a clear sky and at night, above the horizon
+  std::optional<Environment> environment_;  ///< in its place
 };
 
 }  // namespace dreampm::trace

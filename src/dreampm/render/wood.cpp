@@ -1,6 +1,8 @@
 #include "dreampm/render/wood.h"
 
 #include "dreampm/render/color.h"
+#include "dreampm/render/glossy.h"
+#include "dreampm/render/looks.h"
 
 namespace dreampm::trace {
 namespace {
@@ -27,9 +29,26 @@ float noise(float x, float y, float z) {
   return mix(plane(k), plane(k + 1), w);
 }
 
+/// Wood under a satin varnish, in the frame of its object.
+class Wood final : public Look {
+ public:
+  using Look::Look;
+  std::unique_ptr<const Bsdf> bsdf(float outer_ior) const override {
+    return std::make_unique<Coated>(static_cast<float>(model().roughness), outer_ior);
+  }
+  Vec3f color_at(const SurfacePoint& point) const override {
+    return wood_color(pattern_, point.frame, point.position, point.footprint);
+  }
+
+ private:
+  WoodPattern pattern_{Look::color(), static_cast<float>(model().ring.value_or(0))};
+};
+
 }  // namespace
 
-Vec3f wood_color(const Wood& look, const TextureFrame& frame, const Vec3f& p, float footprint) {
+std::unique_ptr<const Look> make_wood(const model::Look& look) { return std::make_unique<Wood>(look); }
+
+Vec3f wood_color(const WoodPattern& look, const TextureFrame& frame, const Vec3f& p, float footprint) {
   const float middle_half =
       std::max(std::min(frame.half.x, frame.half.y), std::min(std::max(frame.half.x, frame.half.y), frame.half.z));
   const float ring = look.ring > 0 ? look.ring : std::max(1e-6f, 2 * middle_half / rings_across);

@@ -49,6 +49,7 @@ void each_model(model::Scene& scene, const std::function<void(std::string&)>& ea
   for (model::Sink& s : scene.sinks) each_model(s.shape, each);
   for (model::Probe& p : scene.probes)
     if (RegionProbe* region = std::get_if<RegionProbe>(&p.form)) each_model(region->shape, each);
+  if (!scene.render.light.environment.empty()) each(scene.render.light.environment);
 }
 
 std::vector<fs::path> model_files(const fs::path& model) {

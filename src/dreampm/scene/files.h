@@ -1,5 +1,5 @@
-// The files that a scene names: meshes and clouds of points of bodies, colliders and probes, and
-// the moment that it starts from.
+// The files that a scene names: meshes and clouds of points of bodies, colliders and probes, the
+// moment that it starts from, and the picture of what is around.
 #pragma once
 #include <filesystem>
 #include <functional>
@@ -13,7 +13,8 @@ namespace dreampm::scene {
 /// Calls `each` with the path of every model that the shape names, so that it can be changed: a
 /// file, or asset:NAME.
 void each_model(Shape& shape, const std::function<void(std::string& path)>& each);
-/// The same for all shapes of a scene: bodies, colliders, regions of probes.
+/// The same for all of a scene: shapes of bodies, colliders, regions of probes, its start, its
+/// environment.
 void each_model(model::Scene& scene, const std::function<void(std::string& path)>& each);
 
 /// The files that a model consists of: itself, and the buffers that a .gltf or .gltf.gz names,

@@ -1,20 +1,10 @@
 // output, surface, render, video: what is kept and how it is shown.
 #include "dreampm/physics/param.h"
+#include "dreampm/scene/look_presets.h"
 #include "dreampm/scene/sections.h"
 
 namespace dreampm::scene {
 namespace {
-
-/// A format of which there is one so far.
-template <class T>
-Field<T> only_word(std::string key, std::string word) {
-  return Field<T>{std::move(key),
-                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
-                    read_word(in.problems, n, path, std::vector<std::string>{word});
-                  },
-                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
-      .takes(word_info({word}));
-}
 
 std::vector<std::string> attribute_words() {
   return {model::particle_attributes.begin(), model::particle_attributes.end()};
@@ -71,83 +61,6 @@ Field<Render> size() {
       .says("Width and height of the pictures in pixels, both even.");
 }
 
-bool fitted(const Camera& c) { return c.fit_basin; }
-bool aimed(const Camera& c) { return !c.fit_basin; }
-
-Field<Camera> camera_from() {
-  Field<Camera> f = vector("from", &Camera::from, any_number("m")).no_default();
-  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
-    out.fit_basin = false;
-    read(in, n, path, out);
-  };
-  return f;
-}
-
-const Schema<Camera>& camera_schema() {
-  static const Schema<Camera> schema{
-      written_when<Camera>(only_word<Camera>("fit", "basin"), fitted)
-          .says("The camera stands so that the box of the scene fills the picture."),
-      written_when<Camera>(camera_from(), aimed).says("Where the camera stands, in place of `fit`."),
-      written_when<Camera>(vector("to", &Camera::to, any_number("m")).no_default(), aimed)
-          .says("The point that it looks at, with `from`."),
-      written_when<Camera>(number("azimuth", &Camera::azimuth, between(-360, 360, "degrees")), fitted)
-          .says("From which side a fitted camera looks, about the vertical."),
-      written_when<Camera>(number("elevation", &Camera::elevation, between(-89, 89, "degrees")), fitted)
-          .says("How high a fitted camera stands over the horizon."),
-      written_when<Camera>(number("fill", &Camera::fill, between(0.05, 2)), fitted)
-          .says("The part of the picture that the box fills for a fitted camera."),
-      number("fov", &Camera::fov, between(1, 150, "degrees")).says("The vertical angle of view."),
-      later<Camera>("shutter"),
-  };
-  return schema;
-}
-
-Field<Render> camera() {
-  Field<Render> f = section("camera", &Render::camera, camera_schema());
-  f.value = map_of([] {
-    MapInfo info{keys_info(camera_schema())};
-    info.together = {"from", "to"};
-    return info;
-  });
-  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
-    const int before = in.problems.errors();
-    read(in, n, path, out);
-    if (in.problems.errors() > before) return;
-    const YamlNode *from = n.find("from"), *to = n.find("to");
-    if (!from != !to)
-      in.problems.error(n.at, fmt::format("{0} has '{1}' without '{2}': give both", path, from ? "from" : "to",
-                                          from ? "to" : "from"));
-    else if (from && out.camera.from == out.camera.to)
-      in.problems.error(to->at, fmt::format("{0}.to is the same point as {0}.from: nothing to look along", path));
-  };
-  return f;
-}
-
-const Schema<Sun>& sun_schema() {
-  static const Schema<Sun> schema{
-      number("elevation", &Sun::elevation, between(2, 90, "degrees")).says("How high the sun stands."),
-      number("azimuth", &Sun::azimuth, between(-360, 360, "degrees")).says("From which side it shines."),
-      number("angle", &Sun::angle, between(0.1, 20, "degrees")).says("The radius of its disc; larger: softer shadows."),
-      number("strength", &Sun::strength, between(0, 1000))
-          .says("The irradiance of a plane that faces it, where the sky has about 1; 0: no sun."),
-  };
-  return schema;
-}
-
-const Schema<Light>& light_schema() {
-  static const Schema<Light> schema{
-      choice("sky", &Light::sky, {"clear", "studio"}).says("A clear sky, or the even light of a studio."),
-      section("sun", &Light::sun, sun_schema()).says("The sun.")};
-  return schema;
-}
-
-const Schema<SceneProps>& stage_schema() {
-  static const Schema<SceneProps> schema{
-      choice("floor", &SceneProps::floor, {"tiles", "none"}).says("The floor below the box."),
-      choice("basin", &SceneProps::basin, {"glass", "none"}).says("Panes of glass where the box has walls.")};
-  return schema;
-}
-
 std::function<bool(const Look&)> is(LookType t) {
   return [t](const Look& l) { return l.type == t; };
 }
@@ -165,20 +78,40 @@ Field<Look> grain() {
   return f;
 }
 
+/// A name for values that keys beside it may change. What is written are the values.
+Field<Look> preset() {
+  std::vector<std::string> names;
+  for (const LookPreset& p : look_presets()) names.emplace_back(p.name);
+  return Field<Look>{"preset",
+                     [names](Reading& in, const YamlNode& n, const std::string& path, Look& out) {
+                       if (const auto name = read_word(in.problems, n, path, names)) out = *look_preset(*name);
+                     },
+                     {}}
+      .takes(word_info(names))
+      .says("Values of known matter; keys beside it win.");
+}
+
 }  // namespace
 
 const Schema<Look>& look_schema() {
   const auto rough = [](const Look& l) { return l.type != LookType::dielectric && l.type != LookType::spheres; };
   static const Schema<Look> schema{
-      choice("type", &Look::type, {"dielectric", "opaque", "spheres", "wood", "metal", "plastic"})
+      preset(),
+      choice("type", &Look::type, {model::look_type_names.begin(), model::look_type_names.end()})
           .no_default()
-          .says("The kind of surface; absent: `dielectric` for liquids, `opaque` for all else."),
-      number("ior", &Look::ior, between(1.01, 3))
+          .says("The kind of surface; absent: `dielectric` for liquids and snow, `opaque` for all else."),
+      number("ior", &Look::ior, between(1, 3))
           .when(is(LookType::dielectric), "type dielectric")
           .says("The index of refraction."),
       vector("absorption", &Look::absorption, between(0, 1e6, "1/m"))
           .when(is(LookType::dielectric), "type dielectric")
           .says("Of red, green and blue light on its way through the medium."),
+      vector("scattering", &Look::scattering, between(0, 1e6, "1/m"))
+          .when(is(LookType::dielectric), "type dielectric")
+          .says("Of red, green and blue light within the medium: what makes milk white; 0: clear."),
+      number("anisotropy", &Look::anisotropy, between(-0.95, 0.95))
+          .when(is(LookType::dielectric), "type dielectric")
+          .says("The mean cosine of scattering: above 0 forward."),
       vector("color", &Look::color, between(0, 1))
           .when([](const Look& l) { return l.type != LookType::dielectric; }, "types other than dielectric")
           .no_default()
@@ -290,9 +223,13 @@ const Schema<Render>& render_schema() {
       number("noise", &Render::noise, between(1e-6, 1)).says("The error of a pixel at which its sampling stops."),
       flag("caustics", &Render::caustics).says("Whether sunlight reaches the floor refracted."),
       flag("physical", &Render::physical).says("Leaves out what is only look: the glow of deep water, a dimmed sun."),
+      flag("denoise", &Render::denoise)
+          .says("Takes the noise that is left out, by Open Image Denoise, which is installed apart."),
+      choice("format", &Render::format, {"png", "exr"})
+          .says("The format of the pictures; `exr` is written beside `png`."),
       camera().says("Where the camera stands and looks."),
-      section("light", &Render::light, light_schema()).says("Sky and sun."),
-      section("stage", &Render::stage, stage_schema()).says("What stands around the matter."),
+      light_field(),
+      stage_field(),
       cut(),
       looks(),
   };
@@ -311,13 +248,14 @@ void read_look(Reading& in, const YamlNode& node, const std::string& path, Look&
   if (out.type == LookType::dielectric) out.color = Look{}.color;  // it has none, whatever was usual here
 }
 
-void read_looks(Reading& in, const YamlNode* render, model::Scene& scene) {
+void read_looks(Reading& in, const YamlNode& root, model::Scene& scene) {
+  const YamlNode *const render = root.find("render"), *const materials = root.find("materials");
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);
-    Look look;
-    look.type = !info_of(m).liquid ? LookType::opaque : LookType::dielectric;
-    scene.render.looks[m.name] = look;
+    const YamlNode* const own = materials && materials->is_map() ? materials->find(m.name) : nullptr;
+    const YamlNode* const preset = own && own->is_map() ? own->find("preset") : nullptr;
+    scene.render.looks[m.name] = default_look(m.type, preset ? preset->text : "", info_of(m).liquid);
   }
   for (const Collider& c : scene.colliders) {
     if (scene.render.looks.contains(c.name)) continue;  // reported with the colliders

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "dreampm/math/look_color.h"
 #include "dreampm/model/scene.h"
 #include "dreampm/physics/param.h"
 #include "dreampm/play/model/solver_choice.h"
@@ -126,9 +127,10 @@ void add_look(const model::Material& m, MatterLook look, std::vector<ControlInfo
 
 MatterLook look_of(const model::Look& look) {
   MatterLook own;
-  own.clear = look.type == model::LookType::dielectric;
+  own.clear = is_clear(look);
   own.grains = look.type == model::LookType::spheres;
   own.color = static_cast<Vec3f>(look.color);
+  if (look.type == model::LookType::dielectric && !own.clear) own.color = shown_color(look);
   own.absorption = static_cast<Vec3f>(look.absorption);
   own.refractive_index = static_cast<float>(look.ior);
   return own;

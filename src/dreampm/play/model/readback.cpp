@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "dreampm/math/look_color.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/model/scene.h"
 #include "dreampm/play/model/cell_means.h"
@@ -125,12 +126,12 @@ bool is_drawn(const model::Collider& c, const ToolSet& tools) {
 
 BodyFrame body_of(const Simulation& simulation, const model::Collider& c) {
   const model::Look& look = simulation.scene().model().render.looks.at(c.name);
-  const bool clear = look.type == model::LookType::dielectric;
+  const bool clear = is_clear(look);
   return {c.name,
           c.rigid.has_value(),
           std::make_shared<const TriMesh>(simulation.collider_mesh(c.name)),
           {},
-          clear ? Vec3f{0.8f, 0.9f, 0.95f} : static_cast<Vec3f>(look.color),
+          clear ? Vec3f{0.8f, 0.9f, 0.95f} : shown_color(look),
           clear ? 0.25f : 1.0f};
 }
 

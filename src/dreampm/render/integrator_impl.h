@@ -1,0 +1,47 @@
+// The parts of the integrator that its files share.
+#pragma once
+#include <array>
+
+#include "dreampm/render/color.h"
+#include "dreampm/render/integrator.h"
+
+namespace dreampm::trace {
+
+/// Below this weight paths go on by lot.
+inline constexpr float weak = 0.02f;
+
+struct Integrator::Path {
+  Vec3f o, d, weight{1, 1, 1};
+  Media media;
+  int bounces = 0;
+  float distance = 0;
+  bool sun_disc = true;
+  bool polished = false;  ///< no further reflection in the floor's polish
+  /// 1/sr: with which a surface drew d that was lit by the sky directly, too; 0: it was not, and
+  /// for mirrors
+  float density = 0;
+  int scatterings = 0;  ///< in cloudy matter so far
+};
+
+struct Integrator::Stack {
+  std::array<Path, 16> paths;
+  std::size_t size = 0;
+  bool room() const { return size < paths.size(); }
+};
+
+/// A point of a surface that a path met.
+struct Integrator::Shading {
+  Vec3f p, n, face;  ///< m; both normals on the path's side
+  Frame frame;       ///< about n
+  Vec3f view;        ///< in the frame
+  Vec3f color;
+  const Bsdf& bsdf;
+};
+
+/// How far a path goes in cloudy matter.
+struct Integrator::FreePath {
+  float length = 1e9f;   ///< m
+  Vec3f share{1, 0, 0};  ///< with which chance each channel chose it
+};
+
+}  // namespace dreampm::trace
