@@ -257,6 +257,8 @@ def load(scene, folder):
     for name in run.materials():
         surface = os.path.exists(run.surface_of(name, run.last_frame()))
         playback.make_result(scene, run.path, name, scene.frame_start, scale, not surface, radius=spacing / scale / 2)
+    if run.has_foam():
+        playback.make_foam(scene, run.path, scene.frame_start, scale)
     for error in playback.refresh(scene):
         raise DreampmError(error)
 

@@ -33,24 +33,48 @@ def look_for(name, kind, preset):
     return look
 
 
-def points_group():
-    """A node group that draws vertices as balls, so that pictures show particles."""
-    title = "DreaMPM Points"
+def foam_look():
+    """The material of spray, foam and bubbles: white that is not quite opaque."""
+    title = "DreaMPM foam"
+    look = bpy.data.materials.get(title)
+    if look:
+        return look
+    look = bpy.data.materials.new(title)
+    if bpy.app.version < (5, 0):
+        look.use_nodes = True
+    shader = next(n for n in look.node_tree.nodes if n.type == "BSDF_PRINCIPLED")
+    shader.inputs["Base Color"].default_value = look.diffuse_color = (0.9, 0.91, 0.93, 1)
+    shader.inputs["Roughness"].default_value = 0.6
+    return look
+
+
+def points_group(own_radii=False):
+    """A node group that draws vertices as balls, so that pictures show particles: of one radius, or of those that the
+    attribute `radius` has."""
+    title = "DreaMPM Foam" if own_radii else "DreaMPM Points"
     group = bpy.data.node_groups.get(title)
     if group:
         return group
     group = bpy.data.node_groups.new(title, "GeometryNodeTree")
     sockets = group.interface
     sockets.new_socket("Geometry", in_out="INPUT", socket_type="NodeSocketGeometry")
-    sockets.new_socket("Radius", in_out="INPUT", socket_type="NodeSocketFloat")
+    if not own_radii:
+        sockets.new_socket("Radius", in_out="INPUT", socket_type="NodeSocketFloat")
     sockets.new_socket("Material", in_out="INPUT", socket_type="NodeSocketMaterial")
     sockets.new_socket("Geometry", in_out="OUTPUT", socket_type="NodeSocketGeometry")
     given, points, dress, out = (group.nodes.new(kind) for kind in (
         "NodeGroupInput", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial", "NodeGroupOutput"))
     for i, node in enumerate((given, points, dress, out)):
         node.location = (220 * i, 0)
+    radius = given.outputs.get("Radius")
+    if own_radii:
+        attribute = group.nodes.new("GeometryNodeInputNamedAttribute")
+        attribute.location = (0, -200)
+        attribute.data_type = "FLOAT"
+        attribute.inputs["Name"].default_value = "radius"
+        radius = attribute.outputs["Attribute"]
     group.links.new(given.outputs["Geometry"], points.inputs["Mesh"])
-    group.links.new(given.outputs["Radius"], points.inputs["Radius"])
+    group.links.new(radius, points.inputs["Radius"])
     group.links.new(points.outputs[0], dress.inputs["Geometry"])
     group.links.new(given.outputs["Material"], dress.inputs["Material"])
     group.links.new(dress.outputs[0], out.inputs[0])
@@ -58,8 +82,16 @@ def points_group():
 
 
 def draw_as_points(thing, radius, look):
+    _draw(thing, points_group(), Radius=radius, Material=look)
+
+
+def draw_as_foam(thing, look):
+    _draw(thing, points_group(own_radii=True), Material=look)
+
+
+def _draw(thing, group, **values):
     modifier = thing.modifiers.get("Points") or thing.modifiers.new("Points", "NODES")
-    modifier.node_group = points_group()
-    identifiers = {i.name: i.identifier for i in modifier.node_group.interface.items_tree if i.in_out == "INPUT"}
-    modifier[identifiers["Radius"]] = radius
-    modifier[identifiers["Material"]] = look
+    modifier.node_group = group
+    identifiers = {i.name: i.identifier for i in group.interface.items_tree if i.in_out == "INPUT"}
+    for name, value in values.items():
+        modifier[identifiers[name]] = value

@@ -12,6 +12,10 @@ from .core.run_folder import RunFolder
 
 PREFIX = "DreaMPM "
 
+# How a mesh keeps values: by how many a vertex has, or by what they are.
+KINDS = {"i": ("INT", "value"), "f": ("FLOAT", "value"), 3: ("FLOAT_VECTOR", "vector"),
+         4: ("BYTE_COLOR", "color_srgb")}
+
 # What each mesh shows, so that a frame is read once: by its session's own number.
 _shown = {}
 
@@ -44,6 +48,9 @@ def fill(mesh, frame):
         mesh.attributes.new("velocity", "FLOAT_VECTOR", "POINT").data.foreach_set("vector", frame.velocity.ravel())
     if frame.ids is not None:
         mesh.attributes.new("id", "INT", "POINT").data.foreach_set("value", frame.ids)
+    for name, values in frame.attributes.items():
+        kind, member = KINDS[values.shape[1] if values.ndim == 2 else values.dtype.kind]
+        mesh.attributes.new(name, kind, "POINT").data.foreach_set(member, values.ravel())
     if m and frame.normals is not None:
         mesh.normals_split_custom_set_from_vertices(frame.normals)
     mesh.update()
@@ -52,13 +59,14 @@ def fill(mesh, frame):
 def show(thing, blender_frame):
     """Puts the frame of the run that belongs to a frame of Blender into the object's mesh."""
     result = thing.dreampm_result
-    files = RunFolder(path_of(thing)).files(result.material, blender_frame - result.first_frame + 1)
+    run, number = RunFolder(path_of(thing)), blender_frame - result.first_frame + 1
+    files = run.foam_files(number) if result.foam else run.files(result.material, number)
     if not files:
         return
     key = state_of(files, result)
     if _shown.get(thing.data.session_uid) == key:
         return
-    fill(thing.data, files.read(result.particles, result.scale))
+    fill(thing.data, files.read(result.particles or result.foam, result.scale))
     _shown[thing.data.session_uid] = key
 
 
@@ -97,7 +105,7 @@ def make_result(scene, folder, material, first_frame, scale, particles=False, ki
                 radius=0.01):
     """The object that shows a material of a run: the one that did so before, or a new one."""
     for thing in results_of(scene, folder):
-        if thing.dreampm_result.material == material:
+        if thing.dreampm_result.material == material and not thing.dreampm_result.foam:
             break
     else:
         mesh = bpy.data.meshes.new(PREFIX + material)
@@ -114,9 +122,25 @@ def make_result(scene, folder, material, first_frame, scale, particles=False, ki
     return thing
 
 
+def make_foam(scene, folder, first_frame, scale):
+    """The object that shows the foam of a run: points of their own radii."""
+    for thing in results_of(scene, folder):
+        if thing.dreampm_result.foam:
+            break
+    else:
+        thing = bpy.data.objects.new(PREFIX + "foam", bpy.data.meshes.new(PREFIX + "foam"))
+        scene.collection.objects.link(thing)
+        thing.data.materials.append(looks.foam_look())
+    result = thing.dreampm_result
+    result.folder = relative(folder)
+    result.material, result.first_frame, result.scale, result.foam = "foam", first_frame, scale, True
+    looks.draw_as_foam(thing, thing.data.materials[0] if thing.data.materials else None)
+    return thing
+
+
 def remove_results(scene, folder, keep=()):
     for thing in results_of(scene, folder):
-        if thing.dreampm_result.material not in keep:
+        if thing.dreampm_result.foam or thing.dreampm_result.material not in keep:
             mesh = thing.data
             bpy.data.objects.remove(thing)
             if not mesh.users:

@@ -118,6 +118,7 @@ class DreampmResult(bpy.types.PropertyGroup):
     folder: StringProperty(name="Folder", **PATH, description="The run's folder")
     material: StringProperty(name="Material", description="Of the run, whose matter it shows")
     particles: BoolProperty(name="Particles", description="Shows particles though there may be a surface")
+    foam: BoolProperty(name="Foam", description="Shows spray, foam, bubbles and dust of the run")
     first_frame: IntProperty(name="First Frame", default=1,
                              description="Of Blender, in which frame 1 of the run is shown")
     scale: FloatProperty(default=1, description="Meters per unit")

@@ -47,6 +47,7 @@ Json errors_in(const std::string& text) {
 }
 
 void print_json(const scene::ParseResult& result, const Preflight& p, const StageEstimate& e) {
+  const auto& foam = result.scene.foam;
   Json warnings = problems(result, true);
   for (const std::string& w : p.warnings) warnings.push_back(w);
   Json json;
@@ -63,6 +64,10 @@ void print_json(const scene::ParseResult& result, const Preflight& p, const Stag
                      {"surface", e.surface_seconds},
                      {"render", e.render_seconds},
                      {"video", e.video_seconds}};
+  if (foam) {
+    const FoamEstimate f = estimate_foam(*foam, p.particles + p.inflow);
+    json["foam"] = {{"most", f.most}, {"memory_bytes", f.memory_bytes}, {"frame_bytes", f.frame_bytes}};
+  }
   json["notes"] = p.notes;
   json["warnings"] = warnings;
   json["errors"] = Json::array();
@@ -89,6 +94,11 @@ void print_text(const model::Scene& scene, const Preflight& p, const StageEstima
   fmt::print("  time      simulate {}, surface {}, render {}, video {} on {} threads\n",
              duration_text(p.simulate_seconds), duration_text(e.surface_seconds), duration_text(e.render_seconds),
              duration_text(e.video_seconds), thread_count());
+  if (scene.foam) {
+    const FoamEstimate foam = estimate_foam(*scene.foam, p.particles + p.inflow);
+    fmt::print("  foam      at most {} grains at once: {} of memory with the matter, {} a frame on disk\n",
+               grouped(foam.most), bytes_text(foam.memory_bytes), bytes_text(foam.frame_bytes));
+  }
   for (const std::string& n : p.notes) fmt::print("  {}\n", n);
 }
 

@@ -49,7 +49,19 @@ void add_export(CLI::App& app, Action& action) {
   verb->add_option("DIR", a->folder, "a run's folder")->required();
   std::vector<std::string> names;
   for (const exchange::Format& f : exchange::formats()) names.push_back(f.name);
-  verb->add_option("--to", a->options.format, format_names())->required()->check(CLI::IsMember(names));
+  // No library for C++ is packaged that writes Alembic: the package of Python does.
+  const CLI::Validator elsewhere(
+      [](std::string& name) -> std::string {
+        if (name != "alembic" && name != "abc") return {};
+        return "Alembic files are written by the package of Python: pip install alembic3d, then python -m "
+               "dreampm.alembic "
+               "DIR";
+      },
+      {});
+  verb->add_option("--to", a->options.format, format_names())
+      ->required()
+      ->check(elsewhere)
+      ->check(CLI::IsMember(names));
   verb->add_option("--up", a->up, "the axis that points up in the files, y or z")
       ->check(CLI::IsMember(ups()))
       ->capture_default_str();

@@ -1,3 +1,5 @@
+#include <map>
+
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -13,8 +15,12 @@ CLI::Validator voxel_in_spacings() {
   return CLI::Validator(check, range.get_description());
 }
 
+const std::map<std::string, model::SurfaceType> types{
+    {"mesh", model::SurfaceType::mesh}, {"fog", model::SurfaceType::fog}, {"sdf", model::SurfaceType::sdf}};
+
 struct SurfaceArguments {
   std::vector<std::string> names;
+  std::string type = "mesh";
   LooseSurfaces loose;
   std::vector<std::string> of_files;  ///< options given that only files take
   int threads = 0;
@@ -34,6 +40,7 @@ int surface(const SurfaceArguments& a) {
   if (names_run(a.names, a.of_files)) return surface_run(a.names[0]);
   LooseSurfaces request = a.loose;
   request.files = a.names;
+  request.type = types.at(a.type);
   for (const std::filesystem::path& f : surface_files(request)) fmt::print("{}\n", f.string());
   return 0;
 }
@@ -58,6 +65,19 @@ void add_surface(CLI::App& app, Action& action) {
       verb->add_option("--smooth", a->loose.smooth, "of files: rounds of smoothing")
           ->capture_default_str()
           ->transform(whole_number(0, 10)),
+      verb->add_option("--type", a->type,
+                       "of files: mesh writes NAME.ply; fog and sdf write NAME.vdb, an OpenVDB fog volume of which the "
+                       "surface is where it is 0.5, or a level set of distances")
+          ->capture_default_str()
+          ->check(CLI::IsMember(types)),
+      verb->add_option(
+              "--attributes", a->loose.attributes,
+              fmt::format("of files: what vertices hold, of {}, with a comma between (default: velocity, where "
+                          "particles have it)",
+                          fmt::join(cloud_attributes(), ", ")))
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::IsMember(cloud_attributes())),
       verb->add_option("--out", a->loose.out, "of files: the folder of their meshes")->capture_default_str()};
   add_threads(*verb, a->threads);
   verb->callback([a, of_files, &action] {

@@ -12,9 +12,35 @@ from . import axes, ply
 from .errors import DreampmError
 
 # What `dreampm run` and `surface` write.
-FOLDERS = ("particles", "surface", "checkpoint", "models", "probes", "render")
+FOLDERS = ("particles", "surface", "foam", "checkpoint", "models", "probes", "render")
 FILES = ("run.json", "scene.yaml", "ledger.csv", "fill.csv", "log.txt", "lock", "contact-sheet.png")
 NUMBERED = re.compile(r"(.+)_(\d{6,})\.ply")
+
+
+# Columns that are no attributes of their own.
+KNOWN = {"x", "y", "z", "nx", "ny", "nz", "vx", "vy", "vz", "id", "material", "alpha"}
+
+
+def attributes_of(file, scale):
+    """What else a file says of its vertices, by name: (n,) numbers, (n, 3) vectors in Blender's axes, (n, 4) a color in
+    sRGB. A radius is in Blender's units."""
+    found = {}
+    rest = [name for name in file.columns.dtype.names if name not in KNOWN]
+    color = file.vectors(("red", "green", "blue"))
+    if color is not None:
+        found["color"] = numpy.concatenate([color / 255, numpy.ones((len(color), 1), "f4")], axis=1).astype("f4")
+        rest = [name for name in rest if name not in ("red", "green", "blue")]
+    for name in [n[:-2] for n in rest if n.endswith("_x")]:
+        vector = file.vectors((f"{name}_x", f"{name}_y", f"{name}_z"))
+        if vector is not None:
+            found[name] = axes.to_blender(vector)
+            rest = [n for n in rest if n not in (f"{name}_x", f"{name}_y", f"{name}_z")]
+    for name in rest:
+        values = file.columns[name]
+        found[name] = values.astype("i4" if values.dtype.kind in "iu" else "f4")
+    if "radius" in found:
+        found["radius"] = (found["radius"] / scale).astype("f4")
+    return found
 
 
 class Frame:
@@ -29,8 +55,10 @@ class Frame:
         self.velocity = None if velocity is None else axes.to_blender(velocity, scale)
         self.normals = None if normal is None else axes.to_blender(normal)
         self.ids = file.columns["id"].astype("i4") if "id" in file.columns.dtype.names else None
+        self.attributes = attributes_of(file, scale)
 
     def keep(self, rows):
+        self.attributes = {name: numpy.ascontiguousarray(v[rows]) for name, v in self.attributes.items()}
         for name in ("points", "velocity", "normals", "ids"):
             values = getattr(self, name)
             if values is not None:
@@ -90,6 +118,17 @@ class RunFolder:
         `meshed` are the names of these materials; without it, the files that are there tell."""
         own = len(meshed) > 1 if meshed is not None else bool(numbered(self.at("surface"), material))
         return self.at("surface", f"{material if own else 'surface'}_{frame:06}.ply")
+
+    def has_foam(self):
+        return bool(numbered(self.at("foam"), "foam"))
+
+    def foam_files(self, number):
+        """The same as `files`, of spray, foam, bubbles and dust. Nothing where the run has none."""
+        frames = numbered(self.at("foam"), "foam")
+        if not frames:
+            return None
+        number = min(max(number, 1), frames[-1])
+        return FrameFiles("foam", number, "", self.at("foam", f"foam_{number:06}.ply"))
 
     def last_frame(self):
         frames = numbered(self.at("particles"), "particles")

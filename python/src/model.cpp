@@ -168,6 +168,7 @@ void inflow_structs(nb::module_& m) {
       .key("jitter", &Emitter::jitter)
       .key("start", &Emitter::start)
       .key("stop", &Emitter::stop)
+      .key("color", &Emitter::color)
       .key("pool", &Emitter::pool)
       .key("recycle", &Emitter::recycle)
       .key("motion", &Emitter::motion)
@@ -268,6 +269,8 @@ void render_structs(nb::module_& m) {
   Section<Surface>(m, "Surface", "How a surface is wrapped around particles.", "surface.")
       .key("voxel", &Surface::voxel)
       .key("smooth", &Surface::smooth)
+      .key("attributes", &Surface::attributes)
+      .key("type", &Surface::type)
       .key("format", &Surface::format)
       .done();
   Section<Look>(m, "Look", "How a material, collider or rigid body looks.", "render.looks.")

@@ -23,7 +23,11 @@ struct WordsOf<SkyKind> {
 };
 template <>
 struct WordsOf<model::SurfaceFormat> {
-  static constexpr std::array<std::string_view, 3> words{"ply", "obj", "vdb"};
+  static constexpr std::array<std::string_view, 2> words{"ply", "obj"};
+};
+template <>
+struct WordsOf<model::SurfaceType> {
+  static constexpr std::array<std::string_view, 3> words{"mesh", "fog", "sdf"};
 };
 template <>
 struct WordsOf<model::PictureFormat> {

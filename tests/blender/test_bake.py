@@ -10,7 +10,7 @@ from conftest import COMMAND, JELLY, WATER, finish, small_setup
 from core import job, ply
 from core.errors import DreampmError
 from core.progress import Progress
-from core.run_folder import RunFolder
+from core.run_folder import Frame, RunFolder
 from core.setup import Material, write_scene
 
 
@@ -82,6 +82,19 @@ def test_frames_without_a_surface_show_particles(baked, tmp_path):
     assert RunFolder(str(tmp_path / "none")).files("water", 1) is None
     with pytest.raises(DreampmError, match="no folder of a run"):
         RunFolder(str(tmp_path / "none")).materials()
+
+
+def test_attributes_of_a_file(tmp_path):
+    names = [("x", "f4"), ("y", "f4"), ("z", "f4"), ("id", "i4"), ("red", "u1"), ("green", "u1"), ("blue", "u1"),
+             ("age", "f4"), ("w_x", "f4"), ("w_y", "f4"), ("w_z", "f4"), ("lone_x", "f4"), ("radius", "f4")]
+    rows = numpy.array([(1, 2, 3, 7, 255, 0, 51, 0.5, 1, 2, 3, 4, 0.25)], dtype=names)
+    frame = Frame(ply.Ply(rows, numpy.empty((0, 3), "i4"), []), 0.01)
+    assert set(frame.attributes) == {"color", "age", "w", "lone_x", "radius"}
+    numpy.testing.assert_allclose(frame.attributes["color"], [[1, 0, 0.2, 1]])
+    numpy.testing.assert_allclose(frame.attributes["w"], [[1, -3, 2]])  # turned, and per second: no unit
+    assert frame.attributes["radius"] == pytest.approx(25)
+    frame.keep(numpy.array([False]))
+    assert len(frame.attributes["w"]) == 0
 
 
 def test_names_of_surfaces(tmp_path):

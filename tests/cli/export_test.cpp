@@ -49,7 +49,9 @@ TEST_F(Export, TakesWhatThereIs) {
 TEST_F(Export, RefusesWhatCannotBe) {
   const std::pair<const char*, const char*> refused[]{
       {"export out/dam", "--to is required"},
-      {"export out/dam --to abc", "--to: abc not in {"},
+      {"export out/dam --to fbx", "--to: fbx not in {"},
+      {"export out/dam --to alembic",
+       "Alembic files are written by the package of Python: pip install alembic3d, then"},
       {"export out/none --to ply", "out/none: no such folder; dreampm run SCENE makes one"},
       {"export out/dam --to ply --what surface", "the surface of frame 1 is missing; dreampm surface out/dam makes it"},
       {"export out/dam --to gltf --up z", "in gltf Y is up by definition"},

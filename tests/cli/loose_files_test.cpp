@@ -42,6 +42,104 @@ TEST_F(LooseFiles, AreWrappedAndDrawn) {
   EXPECT_NE(read_file(folder / "pictures/fluid_0.png"), read_file(folder / "pictures/fluid_1.png"));
 }
 
+TEST_F(LooseFiles, VerticesHoldWhatIsAskedFor) {
+  ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --attributes color,vorticity").code, 0);
+  VertexAttributes got;
+  const TriMesh mesh = read_mesh(folder / "surface/fluid_0.ply", &got);
+  EXPECT_TRUE(mesh.velocities.empty()) << "not asked for";
+  const VertexAttribute* const color = find_attribute(got, "color");
+  ASSERT_TRUE(color);
+  ASSERT_EQ(color->vertices(), mesh.vertices.size());
+  EXPECT_NEAR(color->values[0], 1, 0.01f);
+  EXPECT_NEAR(color->values[1], 0, 0.01f);
+  const VertexAttribute* const vorticity = find_attribute(got, "vorticity");
+  ASSERT_TRUE(vorticity);
+  for (const float w : vorticity->values) EXPECT_NEAR(w, 0, 1e-3f) << "it falls without turning";
+
+  Typed t = type("surface fluid_0.ply --spacing 0.1 --attributes age");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("velocity"));
+  write("bare.ply",
+        "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        "0 0 0\n0.1 0 0\n");
+  t = type("surface bare.ply --spacing 0.1 --attributes color --out bare");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("bare.ply: has no colors, of which attribute color is made"));
+  EXPECT_FALSE(fs::exists(folder / "bare"));
+}
+
+TEST_F(LooseFiles, AreVolumesToo) {
+  Typed t = type("surface fluid_0.ply fluid_1.ply --spacing 0.1 --type sdf --out distances");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(t.out, "distances/fluid_0.vdb\ndistances/fluid_1.vdb\n");
+  t = type("surface fluid_0.ply --spacing 0.1 --type fog --out fog");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_THAT(read_file(folder / "fog/fluid_0.vdb"), HasSubstr("fog volume"));
+  EXPECT_THAT(read_file(folder / "distances/fluid_0.vdb"), HasSubstr("level set"));
+  t = type("surface fluid_0.ply --spacing 0.1 --type sdf --attributes velocity");
+  EXPECT_EQ(t.code, 2);
+  EXPECT_THAT(t.err, HasSubstr("--attributes are of the vertices of meshes; --type sdf has none"));
+}
+
+/// Two frames a 24th of a second apart of jets that meet at 6 m/s, as ASCII PLY.
+std::string jets(int frame, bool ids) {
+  std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 2000\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float vx\nproperty float vy\nproperty float vz\n";
+  text += ids ? "property int id\nend_header\n" : "end_header\n";
+  for (int i = 0; i < 2000; ++i) {
+    const int side = i < 1000 ? -1 : 1, n = i % 1000;
+    const double x = side * (0.01 + 0.02 * (n % 10)) - side * frame * 6.0 / 24 * 0.2;
+    text += fmt::format("{} {} {} {} 0 0{}\n", x, 0.02 * (n / 10 % 10), 0.02 * (n / 100), -6 * side,
+                        ids ? fmt::format(" {}", i) : "");
+  }
+  return text;
+}
+
+TEST_F(LooseFiles, MakeFoam) {
+  for (int n = 0; n < 3; ++n) write(fmt::format("jet_{}.ply", n), jets(n, true));
+  Typed t = type("foam jet_0.ply jet_1.ply jet_2.ply --spacing 0.02");
+  ASSERT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(t.out, "foam/jet_0.ply\nfoam/jet_1.ply\nfoam/jet_2.ply\n");
+  const ParticleFrame first = read_particles(folder / "foam/jet_0.ply"),
+                      last = read_particles(folder / "foam/jet_2.ply");
+  EXPECT_EQ(first.size(), 0u) << "nothing has moved yet";
+  EXPECT_GT(last.size(), 100u);
+  EXPECT_GT(last.columns.at("radius")[0], 0);
+  EXPECT_THAT(t.err, HasSubstr("foam: emitted "));
+  // It is the same for one thread, and half as much by half the amount, as rounding goes by lot.
+  ASSERT_EQ(type("foam jet_0.ply jet_1.ply jet_2.ply --spacing 0.02 --threads 1 --out one").code, 0);
+  EXPECT_EQ(read_file(folder / "foam/jet_2.ply"), read_file(folder / "one/jet_2.ply"));
+  ASSERT_EQ(type("foam jet_0.ply jet_1.ply jet_2.ply --spacing 0.02 --amount 0.5 --out half").code, 0);
+  const double half = static_cast<double>(read_particles(folder / "half/jet_2.ply").size());
+  EXPECT_NEAR(half / static_cast<double>(last.size()), 0.5, 0.05);
+  // Without ids equally many particles are the same in one order.
+  for (int n = 0; n < 3; ++n) write(fmt::format("bare_{}.ply", n), jets(n, false));
+  ASSERT_EQ(type("foam bare_0.ply bare_1.ply bare_2.ply --spacing 0.02").code, 0);
+  EXPECT_EQ(read_file(folder / "foam/bare_2.ply"), read_file(folder / "foam/jet_2.ply"));
+}
+
+TEST_F(LooseFiles, OfWhichNoFoamCanBeMadeSayWhy) {
+  const auto refused = [&](const std::string& line) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line;
+    EXPECT_FALSE(fs::exists(folder / "foam")) << line;
+    return t.err;
+  };
+  write("still.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        "0 0 0\n");
+  EXPECT_THAT(refused("foam still.ply --spacing 0.1"),
+              HasSubstr("still.ply: has no velocities, of which foam is made"));
+  EXPECT_THAT(refused("foam fluid_0.ply"), HasSubstr("--spacing"));
+  EXPECT_THAT(refused("foam fluid_0.ply --spacing 0.1 --frames 1-2"), HasSubstr("--frames is for a run's folder"));
+  write("fewer.ply",
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+        "property float vx\nproperty float vy\nproperty float vz\nend_header\n0 0 0 0 0 0\n");
+  EXPECT_THAT(refused("foam fluid_0.ply fewer.ply --spacing 0.1"),
+              HasSubstr("fewer.ply: has no ids, and not as many particles as others"));
+}
+
 // Scenes give their voxel in cells, of two spacings: the same number would be another size.
 TEST_F(LooseFiles, TheVoxelOfFilesIsInSpacingsAndSaysSo) {
   ASSERT_EQ(type("surface fluid_0.ply --spacing 0.1 --voxel-spacings 1 --out a").code, 0);

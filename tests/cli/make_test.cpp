@@ -342,6 +342,16 @@ TEST_F(Make, AModelThatIsTooLargeForTheWallsIsMadeSmaller) {
   EXPECT_THAT(t.err, HasSubstr("cube.off: 0.5 m long as the scene asks reaches outside the walls; made 0.1697 m long"));
 }
 
+TEST_F(Make, CheckSaysHowMuchFoamThereIsAtMost) {
+  EXPECT_THAT(type("check dam.yaml").out, Not(HasSubstr("foam")));
+  const Typed t = type("check dam.yaml --set foam.most=500000");
+  EXPECT_THAT(t.out, HasSubstr("foam      at most 500,000 grains at once: "));
+  const auto foam = nlohmann::json::parse(type("check --json dam.yaml --set foam.most=500000").out).at("foam");
+  EXPECT_EQ(foam.at("most"), 500000);
+  EXPECT_GT(foam.at("memory_bytes"), 140 * 500000);
+  EXPECT_EQ(foam.at("frame_bytes"), 41 * 500000) << "a row of foam/foam_NNNNNN.ply";
+}
+
 TEST_F(Make, TheDemoRunsWithTheShapeThatNeedsNoFile) {
   const std::string scene = DM_SOURCE_DIR "/scenes/dragon-splatting.yaml";
   const Typed t = type("make " + scene +

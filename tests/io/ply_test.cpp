@@ -192,6 +192,53 @@ TEST(Mesh, ComesBackFromItsFile) {
   EXPECT_TRUE(read_mesh(file).vertices.empty());
 }
 
+TEST(Mesh, AttributesComeBackFromTheirFile) {
+  const fs::path file = test::fresh_folder() / "m.ply";
+  TriMesh m = tetrahedron();
+  m.velocities = {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {-0.1f, 0, 1e-20f}};
+  const VertexAttributes given{{"age", AttributeKind::number, {0, 0.25f, 1e-20f, 1.0f / 3}},
+                               {"color", AttributeKind::color, {1, 0, 0, 0, 0.5f, 0.02f, 0.2f, 0.2f, 0.2f, 0, 0, 1}},
+                               {"source", AttributeKind::whole, {0, -1, 65535, 3}},
+                               {"vorticity", AttributeKind::vector, {1, 2, 3, 4, 5, 6, 7, 8, 9, -1, -2, -3}}};
+  write_mesh(file, m, {}, si_note, given);
+  VertexAttributes got;
+  EXPECT_EQ(read_mesh(file, &got).velocities, m.velocities);
+  ASSERT_EQ(got.size(), given.size());
+  for (std::size_t a = 0; a < given.size(); ++a) {
+    EXPECT_EQ(got[a].name, given[a].name);
+    EXPECT_EQ(got[a].kind, given[a].kind) << given[a].name;
+    if (given[a].kind != AttributeKind::color) {
+      EXPECT_EQ(got[a].values, given[a].values) << given[a].name;
+      continue;
+    }
+    for (std::size_t i = 0; i < given[a].values.size(); ++i)  // bytes of sRGB: half a step of 1/255, in light
+      EXPECT_NEAR(got[a].values[i], given[a].values[i], 0.5f / 255 * 2.3f) << i;
+  }
+  // Who does not ask for them reads the same mesh.
+  EXPECT_EQ(read_mesh(file).vertices, m.vertices);
+  EXPECT_THAT(
+      message_of<InputError>([&] { write_mesh(file, m, {}, si_note, {{"age", AttributeKind::number, {0, 1}}}); }),
+      HasSubstr("4 vertices but 2 numbers of age"));
+}
+
+TEST(Mesh, AttributesOfOthersAreRead) {
+  const fs::path file = test::fresh_folder() / "m.ply";
+  replace_file_text(file,
+                    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property float red\nproperty float green\nproperty float blue\nproperty double heat\n"
+                    "property ushort region\nproperty float flow_x\nelement face 0\n"
+                    "property list uchar uint vertex_index\nend_header\n0 0 0 1 0 0.5 37.5 12 4\n");
+  VertexAttributes got;
+  read_mesh(file, &got);
+  ASSERT_EQ(got.size(), 4u);
+  EXPECT_EQ(got[0].kind, AttributeKind::color);
+  EXPECT_NEAR(got[0].values[2], 0.2140f, 1e-4f);
+  EXPECT_EQ(got[1].name, "heat");
+  EXPECT_EQ(got[1].values[0], 37.5f);
+  EXPECT_EQ(got[2].kind, AttributeKind::whole);
+  EXPECT_EQ(got[3].name, "flow_x") << "a vector needs all three";
+}
+
 TEST(Mesh, QuadsAndOtherElementsAreRead) {
   const fs::path file = test::fresh_folder() / "m.ply";
   replace_file_text(file,
@@ -215,6 +262,15 @@ TEST(Mesh, AMeshThatDoesNotFitTogetherIsRefused) {
   EXPECT_THAT(error([](auto& m) { m.velocities.resize(5); }), HasSubstr("5 velocities"));
   EXPECT_THAT(error([](auto& m) { m.triangles[3][1] = 4; }), HasSubstr("triangle 3 names vertex 4 of 4"));
   EXPECT_EQ(test::files_in(folder), 0u);
+}
+
+TEST(Mesh, ObjHoldsTheColorBehindThePlaces) {
+  const fs::path file = test::fresh_folder() / "m.obj";
+  write_obj(file, tetrahedron(), {}, si_note,
+            {{"color", AttributeKind::color, {1, 0, 0, 0, 0.2140f, 0, 0, 0, 1, 1, 1, 1}},
+             {"age", AttributeKind::number, {1, 2, 3, 4}}});
+  const std::string text = read_file(file);
+  EXPECT_THAT(text, HasSubstr("v 0 0 0 1.0000 0.0000 0.0000\nv 0.1 0 0 0.0000 0.5000 0.0000\n"));
 }
 
 TEST(Mesh, ObjHoldsTheSameNumbers) {

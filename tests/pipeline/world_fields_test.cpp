@@ -43,6 +43,7 @@ void change(RigidBody& v) { change(v.mass); }
 void change(CollisionShape& v) { change(v.shape.rotate_angle); }
 void change(Emitter& v) { change(v.born); }
 void change(Sink& v) { change(v.taken); }
+void change(Arrival& v) { change(v.time); }
 void change(Values& v) { v.set("viscosity", 0.5); }
 void change(TransferRule<double>& v) { change(v.affine); }
 void change(Node<double>& v) { v.m += 0.125; }
@@ -119,6 +120,7 @@ World64 full_world() {
   w.colliders = {{"post", nullptr, WallType::separate, 0, false}};
   w.rigid.resize(1), w.collision.resize(1);
   w.emitters.resize(1), w.emitters[0].name = "tap";
+  w.arrivals = {{20, 3, 0, 0.25}, {23, 2, 0, 0.5}};
   w.sinks.resize(1), w.sinks[0].name = "drain";
   w.viscous_stages = 3, w.kept_kinetic_energy = 0.5, w.settings.sub_cycles = false;
   fill_set(w.sets.emplace_back(), "water", "newtonian", true, state_columns<Newtonian>, 0);
@@ -190,12 +192,18 @@ class Saved : public testing::Test {
 TEST_F(Saved, EveryMemberOfTheStateSurvivesACheckpoint) {
   World64 world = full_world();
   EXPECT_EQ(state_hash(there_and_back(world)), state_hash(world));
+  const std::vector<Arrival> arrivals = there_and_back(world).arrivals;
+  ASSERT_EQ(arrivals.size(), 2u);
+  EXPECT_EQ(arrivals[1].first_id, 23u);
+  EXPECT_EQ(arrivals[1].count, 2u);
   for_each_change(world, [&](const Member& m, const World64& changed) {
     // Other blocks would need other arrays.
     if (m.name == "grid/blocks" || !m.use.saved) return;
     const World64 back = there_and_back(changed);
     EXPECT_EQ(state_hash(back), state_hash(changed)) << m.name;
     EXPECT_EQ(back.kept_kinetic_energy, changed.kept_kinetic_energy) << m.name;
+    ASSERT_EQ(back.arrivals.size(), 2u) << m.name;
+    EXPECT_EQ(back.arrivals[1].time, changed.arrivals[1].time) << m.name;
   });
 }
 

@@ -303,3 +303,76 @@ def test_crates_stand_in_usd_and_vtkhdf_where_the_run_has_them(tmp_path):
     post = UsdGeom.Mesh(stage.GetPrimAtPath("/zoo/post"))
     assert not UsdGeom.Xformable(post).GetOrderedXformOps()
     assert UsdShade.MaterialBindingAPI(post).GetDirectBindingRel().GetTargets()
+
+
+PAINTS = """dreampm: 1
+name: paints
+space: {max: [0.6, 0.5, 0.2], spacing: 0.025, walls: {ceiling: {type: open}}}
+time: {fps: 50, frames: 6}
+materials: {paint: {type: newtonian, viscosity: 1, max_compression: 0.1}}
+bodies: {pool: {material: paint, color: [0, 0.13, 0.52], shape: {box: {min: [0, 0, 0], max: [0.6, 0.1, 0.2]}}}}
+emitters:
+  tap: {material: paint, color: [0.99, 0.83, 0], pool: 9000, velocity: [0.5, -2, 0],
+        shape: {box: {size: [0.2, 0.06, 0.2]}, center: [0.3, 0.2, 0.1]}}
+surface: {attributes: [velocity, color, source, age, j, vorticity]}
+render: {looks: {paint: {type: opaque}}}
+"""
+
+
+@pytest.fixture(scope="module")
+def paints(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("paints")
+    (folder / "paints.yaml").write_text(PAINTS)
+    dreampm(folder, "run", "paints.yaml", "--out", "run")
+    dreampm(folder, "surface", "run")
+    return folder
+
+
+def to_linear(srgb):
+    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055)**2.4)
+
+
+def test_attributes_of_vertices_in_all_formats(paints):
+    n = 6
+    own = read_ply(paints / f"run/surface/surface_{n:06}.ply")[1]
+    color = to_linear(columns(own, "red green blue") / 255)
+    assert set(own["source"]) == {0, 1} and own["age"].max() == pytest.approx((n - 1) / 50, rel=1e-4)
+    vorticity = columns(own, "vorticity_x vorticity_y vorticity_z")
+    assert np.abs(vorticity).max() > 1
+    # Green is where yellow meets blue.
+    green = (color[:, 1] > 1.1 * color[:, 0]) & (color[:, 1] > 1.1 * color[:, 2])
+    assert 5 < green.sum() < len(own) / 2
+
+    dreampm(paints, "export", "run", "--to", "usd", "--up", "z", "--scale", SCALE)
+    stage = Usd.Stage.Open(str(paints / "run/export/paints.usda"))
+    mesh = UsdGeom.PrimvarsAPI(UsdGeom.Mesh.Get(stage, "/paints/surface"))
+    for name, wanted, kind in (("displayColor", color, "color3f[]"), ("age", own["age"], "float[]"),
+                               ("j", own["j"], "float[]"), ("source", own["source"], "int[]"),
+                               ("vorticity", z_up(vorticity), "vector3f[]")):
+        primvar = mesh.GetPrimvar(name)
+        assert primvar.GetInterpolation() == "vertex" and primvar.GetTypeName() == kind
+        np.testing.assert_allclose(primvar.Get(n), wanted, rtol=1e-5, atol=1e-5)
+
+    dreampm(paints, "export", "run", "--to", "vtkhdf", "--what", "surface")
+    times, data = step(paints / "run/export/paints.vtkhdf", n - 1)
+    np.testing.assert_array_equal(array(data, "color"), columns(own, "red green blue"))
+    for name in ("age", "j", "source"):
+        np.testing.assert_array_equal(array(data, name), own[name])
+    assert array(data, "source").dtype == np.int32
+    np.testing.assert_array_equal(array(data, "vorticity"), vorticity)
+
+    [folder] = dreampm(paints, "export", "run", "--to", "gltf", "--what", "surface")
+    mesh = trimesh.load(paints / folder / f"paints_{n:06}.glb", process=False).geometry["surface"]
+    np.testing.assert_allclose(np.ravel(mesh.vertex_attributes["_AGE"]), own["age"])
+    np.testing.assert_allclose(mesh.vertex_attributes["_VORTICITY"], vorticity)
+    [folder] = dreampm(paints, "export", "run", "--to", "obj", "--what", "surface")
+    lines = (paints / folder / f"surface_{n:06}.obj").read_text().splitlines()
+    back = np.array([[float(w) for w in line.split()[4:]] for line in lines if line.startswith("v ")])
+    np.testing.assert_allclose(back * 255, columns(own, "red green blue"), atol=0.05)
+    [folder] = dreampm(paints, "export", "run", "--to", "ply", "--up", "z")
+    head, back = read_ply(paints / folder / f"surface_{n:06}.ply")
+    np.testing.assert_allclose(columns(back, "vorticity_x vorticity_y vorticity_z"), z_up(vorticity), rtol=1e-6)
+    np.testing.assert_array_equal(columns(back, "red green blue"), columns(own, "red green blue"))
+    head, back = read_ply(paints / folder / f"particles_{n:06}.ply")
+    assert "comment source 0 tap" in head and "comment source 1 pool" in head
+    np.testing.assert_array_equal(np.unique(back["source"]), [0, 1])

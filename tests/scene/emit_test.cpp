@@ -159,7 +159,7 @@ space:
 time: {fps: 30, frames: 17, dt: 1.0e-4, damping: 0.1, surface_contact: false}
 gravity: {keys: [{t: 0.5, value: [0.1, -3, 1e-7]}, {t: 2, value: [0, 0, 1]}]}
 emitters:
-  tap: {material: water, shape: {sphere: {radius: 0.1}, center: [0.5, 0.5, 0.5]}, velocity: [0, -1, 0], start: 0.5, stop: 2, pool: 100, recycle: true}
+  tap: {material: water, shape: {sphere: {radius: 0.1}, center: [0.5, 0.5, 0.5]}, velocity: [0, -1, 0], start: 0.5, stop: 2, color: [0.9, 0.1, 0.4], pool: 100, recycle: true}
   hose: {material: water, shape: {sphere: {radius: 0.1}, center: [0.5, 0.5, 0.5]}, flow: 0.001, direction: [1, 0, 0], pool: 7}
 sinks: {drain: {shape: {box: {size: [0.1, 0.1, 0.1]}, center: [0.5, 0.1, 0.5]}}}
 rigid:
@@ -200,7 +200,7 @@ probes:
   reach: {type: extent, axis: z}
   tip: {type: point, body: d, at: [0.5, 0.9, 0.6]}
 output: {folder: "out/with space", particles: {attributes: [j, pressure]}, checkpoint: {every: 0}}
-surface: {voxel: 0.4, smooth: 0, format: obj}
+surface: {voxel: 0.4, smooth: 0, attributes: [age, j], type: sdf, format: obj}
 render:
   size: [320, 200]
   samples: 12
@@ -231,11 +231,41 @@ TEST(Emit, ReadsBackAsTheSameScene) {
 TEST(Emit, AnotherSurfaceFormatIsTheSameMesh) {
   model::Scene d = parsed(everything);
   const std::string surface = scene_hash(d, Part::surface), render = scene_hash(d, Part::render);
-  d.surface.format = model::SurfaceFormat::vdb;
+  d.surface.format = model::SurfaceFormat::ply;
+  EXPECT_EQ(scene_hash(d, Part::surface), surface);
+  d.surface.type = model::SurfaceType::fog;
   EXPECT_EQ(scene_hash(d, Part::surface), surface);
   EXPECT_EQ(scene_hash(d, Part::render), render);
   d.surface.smooth = 1;
   EXPECT_NE(scene_hash(d, Part::surface), surface);
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+  return text;
+}
+
+TEST(Emit, TheFormatVdbOfEarlierVersionsIsTheTypeFog) {
+  const model::Scene d = parsed(replaced(everything, "type: sdf, format: obj", "format: vdb"));
+  EXPECT_EQ(d.surface.type, model::SurfaceType::fog);
+  EXPECT_EQ(d.surface.format, model::SurfaceFormat::ply);
+  EXPECT_NE(write_scene(d).find("type: fog"), std::string::npos);
+}
+
+TEST(Emit, OtherAttributesOfSurfacesAreOtherMeshesAndMayNeedOtherParticles) {
+  model::Scene d = parsed(everything);
+  d.surface.attributes = {"velocity"};
+  const auto hashes = [&] { return std::pair{scene_hash(d, Part::particles), scene_hash(d, Part::surface)}; };
+  const auto [particles, surface] = hashes();
+  d.surface.attributes = {"velocity", "vorticity"};
+  EXPECT_EQ(hashes().first, particles) << "it is made of the velocities";
+  EXPECT_NE(hashes().second, surface);
+  d.surface.attributes = {"velocity", "age"};
+  EXPECT_NE(hashes().first, particles) << "files of particles get an age";
+  d.surface.attributes = {"velocity", "color"};
+  const std::string colored = hashes().second;
+  d.bodies[0].color = Vec3d{0.5, 0.25, 0.125};
+  EXPECT_NE(hashes().second, colored) << "another color of a body";
 }
 
 TEST(Emit, EveryShippedSceneReadsBack) {

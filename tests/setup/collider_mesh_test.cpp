@@ -164,18 +164,20 @@ TEST(Colors, OfABodyLieOnItsHalfOfTheMesh) {
   // Two bodies of one material, red at the left, blue at the right; a vertex in each and one far
   // off.
   std::vector<Vec3f> positions, colors;
-  const Vec3f red{1, 0, 0}, blue{0, 0, 1}, gray{0.5f, 0.5f, 0.5f};
+  const Vec3f red{1, 0, 0}, blue{0, 0, 1};
   for (int i = 0; i < 20; ++i) {
     positions.push_back({0.01f * static_cast<float>(i), 0, 0});
     colors.push_back(i < 10 ? red : blue);
   }
   TriMesh mesh;
   mesh.vertices = {{0.02f, 0.005f, 0}, {0.17f, 0.005f, 0}, {0.095f, 0.005f, 0}, {1, 1, 1}};
-  const std::vector<Vec3f> got = vertex_colors(mesh, positions, colors, 0.01f, gray);
+  const std::vector<Vec3f> got = vertex_colors(mesh, positions, colors, 0.01f, Mixing::opaque);
   EXPECT_EQ(got[0], red);
   EXPECT_EQ(got[1], blue);
-  EXPECT_NEAR(got[2].x, 0.5f, 1e-3f);  // half way
-  EXPECT_EQ(got[3], gray);
+  PigmentMix half(Mixing::opaque);  // half way
+  half.add(Pigment::of(red, Mixing::opaque), 1), half.add(Pigment::of(blue, Mixing::opaque), 1);
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[2][c], half.color()[c], 1e-3f);
+  EXPECT_EQ(got[3], blue);  // the nearest
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ struct Emitter {
   double jitter = 0;                ///< spacings that particles are off their places along each axis at most
   double start = 0;                 ///< s
   std::optional<double> stop{};     ///< s; absent: never
+  std::optional<Vec3d> color{};     ///< sRGB, 0 to 1, of what it gives; absent: the look of its material
   std::int64_t pool = 0;            ///< particles that it may give, at least 1
   bool recycle = false;             ///< true if the pool is what may be there at once, not in all
   std::optional<Motion> motion{};   ///< of its shape; velocities are those in the shape

@@ -27,15 +27,24 @@ struct Output {
   int checkpoint_every = 10;                        ///< frames; 0: never
   bool operator==(const Output&) const = default;
 };
-inline constexpr std::array<const char*, 7> particle_attributes{"velocity", "f",        "j",    "jp",
-                                                                "density",  "pressure", "color"};
+inline constexpr std::array<const char*, 9> particle_attributes{"velocity", "f",     "j",      "jp", "density",
+                                                                "pressure", "color", "source", "age"};
 
-enum class SurfaceFormat { ply, obj, vdb };
+/// What is written beside the mesh.
+enum class SurfaceType {
+  mesh,  ///< nothing
+  fog,   ///< an OpenVDB fog volume of the field that the mesh is a contour of
+  sdf    ///< an OpenVDB level set of distances from the mesh
+};
+enum class SurfaceFormat { ply, obj };
+inline constexpr std::array<const char*, 6> surface_attributes{"velocity", "color", "source", "age", "j", "vorticity"};
 
 /// The settings of the surface that is wrapped around particles.
 struct Surface {
-  double voxel = 0.5;  ///< in units of dx
-  int smooth = 2;      ///< rounds of smoothing, 0 to 10
+  double voxel = 0.5;                               ///< in units of dx
+  int smooth = 2;                                   ///< rounds of smoothing, 0 to 10
+  std::vector<std::string> attributes{"velocity"};  ///< of the vertices; of surface_attributes
+  SurfaceType type = SurfaceType::mesh;
   SurfaceFormat format = SurfaceFormat::ply;
   bool operator==(const Surface&) const = default;
 };

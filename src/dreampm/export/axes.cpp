@@ -35,6 +35,14 @@ void Axes::apply(TriMesh& mesh) const {
   for (Vec3f& n : mesh.normals) n = turned(n);
 }
 
+void Axes::apply(VertexAttributes& attributes) const {
+  for (VertexAttribute& a : attributes)
+    for (std::size_t i = 0; a.kind == AttributeKind::vector && i + 2 < a.values.size(); i += 3) {
+      const Vec3f v = turned(Vec3f{a.values[i], a.values[i + 1], a.values[i + 2]});
+      for (int c = 0; c < 3; ++c) a.values[i + static_cast<std::size_t>(c)] = v[c];
+    }
+}
+
 void Axes::apply(ParticleFrame& frame) const {
   for (Vec3f& x : frame.position) x = placed(x);
   for (Vec3d& x : frame.exact) x = placed(x);

@@ -1,6 +1,7 @@
 // The axes and the unit of other programs.
 #pragma once
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/vertex_attributes.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/math/vec.h"
 
@@ -28,6 +29,8 @@ struct Axes {
     return turned(v) * static_cast<R>(scale);
   }
   void apply(TriMesh& mesh) const;
+  /// Vectors are turned; all values stay in SI units.
+  void apply(VertexAttributes& attributes) const;
   /// Places, shift, velocities, and the deformation gradient f_00..f_22 where all of it is there.
   /// Other columns are numbers without a direction, and stay in SI units.
   void apply(ParticleFrame& frame) const;

@@ -65,9 +65,16 @@ struct ClipFrame {
   ParticleFrame particles;
   std::vector<Vec3f> colors;    ///< linear, of each particle; empty: they have those of their materials
   std::vector<TriMesh> meshes;  ///< one for each of ClipInfo::meshed
+  /// What the vertices of the meshes hold, one for each; empty: nothing.
+  std::vector<VertexAttributes> attributes{};
   /// With columns type, age and life [s], and radius in the unit of the file; all of one material.
   ParticleFrame foam{};
   std::vector<ObjectState> objects;  ///< one for each of ClipInfo::objects
+
+  const VertexAttributes& attributes_of(std::size_t mesh) const {
+    static const VertexAttributes none;
+    return mesh < attributes.size() ? attributes[mesh] : none;
+  }
 };
 
 /// An object where it stands in a frame.

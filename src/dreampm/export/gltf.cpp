@@ -3,6 +3,7 @@
 // (https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html). Y is up there by definition.
 #include <fmt/format.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <span>
@@ -21,6 +22,11 @@ using Json = nlohmann::ordered_json;
 
 enum Mode { points = 0, triangles = 4 };  // as glTF counts them
 enum Component { unsigned_int = 5125, float_number = 5126 };
+
+std::string upper(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return text;
+}
 
 template <class T>
 Json triple(const Vec3<T>& v) {
@@ -113,28 +119,42 @@ class Document {
   std::string buffer_;
 };
 
+/// A color of a vertex is linear, and multiplied by that of its material, which is white then.
+std::size_t white(Document& document, ClipMaterial material) {
+  material.name += " in colors";
+  material.color = {1, 1, 1};
+  return document.add_material(material);
+}
+
+/// Attributes that glTF does not know have names that begin with _.
+void add_attribute(Document& document, const VertexAttribute& a, Json& to) {
+  if (a.width() == 1) {
+    to[fmt::format("_{}", upper(a.name))] =
+        document.accessor(std::span<const float>(a.values), float_number, "SCALAR", true);
+    return;
+  }
+  std::vector<Vec3f> vectors(a.vertices());
+  for (std::size_t i = 0; i < vectors.size(); ++i)
+    vectors[i] = {a.values[3 * i], a.values[3 * i + 1], a.values[3 * i + 2]};
+  to[a.kind == AttributeKind::color ? "COLOR_0" : fmt::format("_{}", upper(a.name))] =
+      document.accessor(std::span<const Vec3f>(vectors), float_number, "VEC3", true);
+}
+
 void add_mesh(Document& document, const std::string& name, const TriMesh& mesh, std::size_t material,
-              const Vec3d& shift) {
+              const Vec3d& shift, const VertexAttributes& others = {}) {
   if (mesh.triangles.empty()) return;  // an accessor has one element or more
   Json attributes{{"POSITION", document.positions(mesh.vertices)}};
   if (!mesh.normals.empty())
     attributes["NORMAL"] = document.accessor(std::span(mesh.normals), float_number, "VEC3", true);
   if (!mesh.velocities.empty())
     attributes["_VELOCITY"] = document.accessor(std::span(mesh.velocities), float_number, "VEC3", true);
+  for (const VertexAttribute& a : others) add_attribute(document, a, attributes);
   const std::span<const std::uint32_t> corners(mesh.triangles[0].data(), 3 * mesh.triangles.size());
   document.add_node(name, shift,
                     {{"attributes", attributes},
                      {"indices", document.accessor(corners, unsigned_int, "SCALAR", false)},
                      {"material", material},
                      {"mode", int(triangles)}});
-}
-
-/// A color of a vertex is linear, and multiplied by that of its material, which is white then.
-std::size_t white(Document& document, ClipMaterial material) {
-  material.name += " in colors";
-  material.color = {1, 1, 1};
-  material.ior.reset();  // clear matter has no color of its own
-  return document.add_material(material);
 }
 
 void add_points(Document& document, const ClipInfo& clip, const ClipFrame& frame, std::size_t material) {
@@ -151,10 +171,19 @@ void add_points(Document& document, const ClipInfo& clip, const ClipFrame& frame
   std::size_t look = material;
   if (!color.empty()) {
     attributes["COLOR_0"] = document.accessor(std::span<const Vec3f>(color), float_number, "VEC3", true);
-    look = white(document, clip.materials[material]);
+    ClipMaterial matter = clip.materials[material];
+    matter.ior.reset();  // points are drawn as what is seen, not looked through
+    look = white(document, matter);
   }
   document.add_node(clip.materials[material].name, clip.shift,
                     {{"attributes", attributes}, {"material", look}, {"mode", int(points)}});
+}
+
+void add_surface(Document& document, const ClipInfo& clip, const ClipFrame& frame, std::size_t m) {
+  const auto material = static_cast<std::size_t>(clip.meshed[m]);
+  const bool colored = find_attribute(frame.attributes_of(m), "color") != nullptr && !frame.meshes[m].triangles.empty();
+  add_mesh(document, clip.mesh_name(m), frame.meshes[m], colored ? white(document, clip.materials[material]) : material,
+           clip.shift, frame.attributes_of(m));
 }
 
 void add_foam(Document& document, const ClipInfo& clip, const ParticleFrame& foam) {
@@ -189,8 +218,7 @@ void add_camera(Document& document, const ClipCamera& c) {
 
 void write_gltf_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::path& folder) {
   Document document(clip);
-  for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    add_mesh(document, clip.mesh_name(m), frame.meshes[m], static_cast<std::size_t>(clip.meshed[m]), clip.shift);
+  for (std::size_t m = 0; m < frame.meshes.size(); ++m) add_surface(document, clip, frame, m);
   if (clip.particles)
     for (std::size_t m = 0; m < clip.materials.size(); ++m) add_points(document, clip, frame, m);
   if (clip.foam) add_foam(document, clip, frame.foam);

@@ -33,7 +33,8 @@ void write_ply_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   if (clip.particles) write_particles(folder / numbered("particles", frame.number, ".ply"), frame.particles, text);
   if (clip.foam) write_particles(folder / numbered("foam", frame.number, ".ply"), frame.foam, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    write_mesh(folder / numbered(clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], clip.shift, text);
+    write_mesh(folder / numbered(clip.mesh_name(m), frame.number, ".ply"), frame.meshes[m], clip.shift, text,
+               frame.attributes_of(m));
   for (std::size_t o = 0; o < clip.objects.size(); ++o)
     write_mesh(folder / numbered(clip.object_name(o), frame.number, ".ply"), placed(clip.objects[o], frame.objects[o]),
                clip.shift, text);
@@ -45,7 +46,8 @@ void write_obj_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
     write_obj_points(folder / numbered("particles", frame.number, ".obj"), clip, frame.particles, text);
   if (clip.foam) write_obj_points(folder / numbered("foam", frame.number, ".obj"), clip, frame.foam, text);
   for (std::size_t m = 0; m < frame.meshes.size(); ++m)
-    write_obj(folder / numbered(clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], clip.shift, text);
+    write_obj(folder / numbered(clip.mesh_name(m), frame.number, ".obj"), frame.meshes[m], clip.shift, text,
+              frame.attributes_of(m));
   for (std::size_t o = 0; o < clip.objects.size(); ++o)
     write_obj(folder / numbered(clip.object_name(o), frame.number, ".obj"), placed(clip.objects[o], frame.objects[o]),
               clip.shift, text);

@@ -145,9 +145,10 @@ class MeshPrim {
         normals_(numbers.samples("normal3f[] normals", per_point)),
         velocities_(numbers.samples("vector3f[] velocities")),
         counts_(numbers.samples("int[] faceVertexCounts")),
-        indices_(numbers.samples("int[] faceVertexIndices")) {}
+        indices_(numbers.samples("int[] faceVertexIndices")),
+        numbers_(numbers) {}
 
-  void add(int number, const TriMesh& mesh) {
+  void add(int number, const TriMesh& mesh, const VertexAttributes& attributes = {}) {
     extent_.add(number, extent(mesh.vertices, 0));
     points_.add(number, mesh.vertices);
     if (!mesh.normals.empty()) normals_.add(number, mesh.normals);
@@ -155,6 +156,11 @@ class MeshPrim {
     counts_.add<int>(number, std::vector<int>(mesh.triangles.size(), 3));
     const std::uint32_t* const first = mesh.triangles.empty() ? nullptr : mesh.triangles[0].data();
     indices_.add(number, std::span<const std::uint32_t>(first, 3 * mesh.triangles.size()));
+    for (const VertexAttribute& a : attributes) {
+      auto& samples = attributes_[a.name];
+      if (!samples) samples = numbers_.more(head_of(a), per_point);
+      samples->add(number, std::span<const float>(a.values), a.width());
+    }
   }
 
   void write(ByteSink& out) {
@@ -164,12 +170,21 @@ class MeshPrim {
         "        uniform token subdivisionScheme = \"none\"\n        uniform token orientation = \"rightHanded\"\n");
     for (UsdSamples* s : {&extent_, &points_, &normals_, &velocities_, &counts_, &indices_})
       s->copy_to(out, "        ");
+    for (const auto& [name, samples] : attributes_) samples->copy_to(out, "        ");
     out.text(fmt::format("        rel material:binding = <{}>\n    }}\n", look_));
   }
 
  private:
+  /// Whole numbers are written as such. A color of a vertex is what programs show.
+  static std::string head_of(const VertexAttribute& a) {
+    if (a.kind == AttributeKind::color) return "color3f[] primvars:displayColor";
+    const char* type = a.kind == AttributeKind::vector ? "vector3f" : a.kind == AttributeKind::whole ? "int" : "float";
+    return fmt::format("{}[] primvars:{}", type, usd_name(a.name));
+  }
   std::string name_, look_;
   UsdSamples extent_, points_, normals_, velocities_, counts_, indices_;
+  Numbers& numbers_;
+  std::map<std::string, std::unique_ptr<UsdSamples>> attributes_;
 };
 
 /// A collider or a rigid body: one mesh and its transform over time.
@@ -254,7 +269,8 @@ class UsdWriter final : public ClipWriter {
   void add(const ClipFrame& frame) override {
     for (const auto& p : points_) p->add(frame.number, frame.particles, frame.colors);
     if (foam_) foam_->add(frame.number, frame.foam, {});
-    for (std::size_t m = 0; m < meshes_.size(); ++m) meshes_[m]->add(frame.number, frame.meshes[m]);
+    for (std::size_t m = 0; m < meshes_.size(); ++m)
+      meshes_[m]->add(frame.number, frame.meshes[m], frame.attributes_of(m));
     for (std::size_t o = 0; o < objects_.size(); ++o)
       if (objects_[o])
         objects_[o]->add(frame.number, frame.objects[o].pose);

@@ -1,35 +1,17 @@
 // OpenVDB: a level set of each mesh, collider and rigid body, and a grid of velocities, a file a
 // frame. The only file of this module that includes OpenVDB.
 #include <openvdb/openvdb.h>
-#include <openvdb/tools/MeshToVolume.h>
 
 #include <cmath>
 
 #include "dreampm/export/formats.h"
 #include "dreampm/import/vdb_file.h"
-#include "dreampm/import/vdb_mesh.h"
+#include "dreampm/import/vdb_level_set.h"
 #include "dreampm/io/numbered.h"
 
 namespace dreampm::exchange {
 namespace fs = std::filesystem;
 namespace {
-
-openvdb::math::Transform::Ptr transform(double voxel, const Vec3d& shift) {
-  auto t = openvdb::math::Transform::createLinearTransform(voxel);
-  t->postTranslate(openvdb::Vec3d(shift.x, shift.y, shift.z));
-  return t;
-}
-
-/// Distances from the mesh within three voxels of half a spacing, negative inside.
-openvdb::FloatGrid::Ptr level_set(const TriMesh& mesh, double spacing, const Vec3d& shift) {
-  constexpr float half_width = 3;
-  const double voxel = spacing / 2;
-  const auto at_origin = openvdb::math::Transform::createLinearTransform(voxel);
-  auto grid =
-      openvdb::tools::meshToLevelSet<openvdb::FloatGrid>(*at_origin, vdb_points(mesh), vdb_triangles(mesh), half_width);
-  grid->setTransform(transform(voxel, shift));
-  return grid;
-}
 
 /// Momentum over mass of the particles about each node, trilinear, as a grid of the simulation has
 /// it: nodes are two spacings apart.
@@ -55,7 +37,7 @@ openvdb::Vec3SGrid::Ptr velocity_grid(const ParticleFrame& frame, double spacing
   }
   for (auto value = grid->beginValueOn(); value; ++value) value.setValue(*value / weight.getValue(value.getCoord()));
   grid->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
-  grid->setTransform(transform(voxel, shift));
+  grid->setTransform(vdb_transform(voxel, shift));
   return grid;
 }
 
@@ -77,7 +59,7 @@ openvdb::FloatGrid::Ptr foam_fog(const ParticleFrame& foam, double spacing, cons
     }
   }
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->setTransform(transform(spacing, shift));
+  grid->setTransform(vdb_transform(spacing, shift));
   return grid;
 }
 
@@ -85,13 +67,13 @@ void write_vdb_frame(const ClipInfo& clip, const ClipFrame& frame, const fs::pat
   openvdb::initialize();
   openvdb::GridPtrVec grids;
   for (std::size_t m = 0; m < frame.meshes.size(); ++m) {
-    grids.push_back(level_set(frame.meshes[m], clip.spacing, clip.shift));
+    grids.push_back(vdb_level_set(frame.meshes[m], clip.spacing / 2, clip.shift));
     grids.back()->setName(clip.mesh_name(m));
   }
   for (std::size_t o = 0; o < clip.objects.size(); ++o) {
     const TriMesh mesh = placed(clip.objects[o], frame.objects[o]);
     if (mesh.triangles.empty()) continue;
-    grids.push_back(level_set(mesh, clip.spacing, clip.shift));
+    grids.push_back(vdb_level_set(mesh, clip.spacing / 2, clip.shift));
     grids.back()->setName(clip.object_name(o));
   }
   if (clip.particles) {

@@ -2,6 +2,8 @@
 // File Format", version 2.0 (https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html).
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "dreampm/base/error.h"
@@ -9,6 +11,7 @@
 #include "dreampm/base/replacement.h"
 #include "dreampm/export/formats.h"
 #include "dreampm/export/hdf5_output.h"
+#include "dreampm/math/srgb.h"
 
 namespace dreampm::exchange {
 namespace fs = std::filesystem;
@@ -208,11 +211,47 @@ void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const Par
   if (!p.color.empty()) out.point_data("color", p.color[0].data(), n, 4);
 }
 
+/// The bytes of a color in sRGB, which ParaView shows as they are.
+std::vector<std::uint8_t> bytes_of(const std::vector<float>& linear) {
+  std::vector<std::uint8_t> out;
+  out.reserve(linear.size());
+  for (const float v : linear)
+    out.push_back(static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(v, 0.0f, 1.0f)))));
+  return out;
+}
+
+void add_attribute(VtkHdfFile& out, const VertexAttribute& a, std::size_t vertices) {
+  const hsize_t n = vertices;
+  switch (a.kind) {
+    case AttributeKind::number:
+      return out.point_data(a.name, a.values.data(), n, 0);
+    case AttributeKind::vector:
+      return out.point_data(a.name, a.values.data(), n, 3);
+    case AttributeKind::color:
+      return out.point_data(a.name, bytes_of(a.values).data(), n, 3);
+    case AttributeKind::whole:
+      break;
+  }
+  const std::vector<std::int32_t> whole(a.values.begin(), a.values.end());
+  out.point_data(a.name, whole.data(), n, 0);
+}
+
+/// The attributes of meshes as those of one; all have the same.
+VertexAttributes joined(std::span<const VertexAttributes> of_meshes) {
+  VertexAttributes all;
+  for (const VertexAttributes& attributes : of_meshes)
+    for (std::size_t a = 0; a < attributes.size(); ++a) {
+      if (a == all.size()) all.push_back({attributes[a].name, attributes[a].kind, {}});
+      all[a].values.insert(all[a].values.end(), attributes[a].values.begin(), attributes[a].values.end());
+    }
+  return all;
+}
+
 /// Meshes as one, whose points know which of them they belong to: `number` of each, by the name
 /// `what`.
 template <class Number>
 void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<const TriMesh> meshes,
-                std::span<const Number> numbers, const char* what) {
+                std::span<const Number> numbers, const char* what, std::span<const VertexAttributes> attributes = {}) {
   TriMesh all;
   std::vector<Number> number;
   std::vector<std::int64_t> corners;
@@ -225,7 +264,6 @@ void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<cons
     all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
     const auto take = [&](std::vector<Vec3f>& to, const std::vector<Vec3f>& from) {
       to.insert(to.end(), from.begin(), from.end());
-      to.resize(all.vertices.size());
     };
     take(all.normals, mesh.normals), take(all.velocities, mesh.velocities);
     number.insert(number.end(), n, numbers[m]);
@@ -233,8 +271,11 @@ void add_meshes(VtkHdfFile& out, double time, const Vec3d& shift, std::span<cons
   const hsize_t n = all.vertices.size();
   out.begin(time, all.vertices, shift);
   out.cells(VtkHdfFile::polygons, corners, 3);
-  out.point_data("velocity", n > 0 ? &all.velocities[0].x : nullptr, n, 3);
-  out.point_data("Normals", n > 0 ? &all.normals[0].x : nullptr, n, 3);
+  // What some of the meshes lack is left out.
+  if (n > 0 && all.velocities.size() == n) out.point_data("velocity", &all.velocities[0].x, n, 3);
+  if (n > 0 && all.normals.size() == n) out.point_data("Normals", &all.normals[0].x, n, 3);
+  for (const VertexAttribute& a : joined(attributes))
+    if (a.vertices() == n) add_attribute(out, a, n);
   out.point_data(what, number.data(), n, 0);
 }
 
@@ -269,7 +310,8 @@ class VtkHdfWriter final : public ClipWriter {
     const double time = clip_.time(frame.number);
     if (particles_) add_particles(*particles_, time, clip_, frame.particles);
     if (foam_) add_particles(*foam_, time, clip_, frame.foam);
-    if (meshes_) add_meshes<std::uint8_t>(*meshes_, time, clip_.shift, frame.meshes, materials_, "material");
+    if (meshes_)
+      add_meshes<std::uint8_t>(*meshes_, time, clip_.shift, frame.meshes, materials_, "material", frame.attributes);
     if (!objects_) return;
     std::vector<TriMesh> standing;
     for (std::size_t o = 0; o < clip_.objects.size(); ++o)

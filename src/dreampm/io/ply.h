@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/geometry/vertex_attributes.h"
 #include "dreampm/import/ply_header.h"
 #include "dreampm/math/vec.h"
 
@@ -35,6 +36,9 @@ struct ParticleFrame {
   std::vector<std::int32_t> id;        ///< stays with a particle through a run
   std::vector<std::uint8_t> material;  ///< index into material_names
   std::vector<std::string> material_names;
+  /// The emitters and bodies that the column `source` counts from 0; -1 there: unknown. May be
+  /// empty.
+  std::vector<std::string> source_names;
   /// Optional: f_00..f_22 (deformation gradient, row and column), j, jp, density (kg/m^3), pressure
   /// (Pa), or others.
   std::map<std::string, std::vector<float>> columns;
@@ -55,20 +59,24 @@ void write_particles(const std::filesystem::path& file, const ParticleFrame& fra
 ParticleFrame read_particles(const std::filesystem::path& file);
 
 /// Writes float x y z, nx ny nz and vx vy vz where present, and faces (uchar count, int indices).
-/// Throws InputError if sizes differ or an index is out of range, RunError if the file cannot be
-/// written. `shift`: where vertices count from; the file says so as particle files do.
+/// Attributes follow: numbers as float NAME, whole ones as int NAME, vectors as float NAME_x,
+/// NAME_y, NAME_z, and the color as uchar red, green, blue in sRGB. Throws InputError if sizes
+/// differ or an index is out of range, RunError if the file cannot be written. `shift`: where
+/// vertices count from; the file says so as particle files do.
 void write_mesh(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
-                const std::string& note = si_note);
+                const std::string& note = si_note, const VertexAttributes& attributes = {});
 
 /// Reads a PLY surface mesh (as read_particles does); faces of 4 become two triangles. Vertices are
-/// as in the file, without its shift. Throws InputError.
-TriMesh read_mesh(const std::filesystem::path& file);
+/// as in the file, without its shift. All other values of vertices go to `attributes`, if that is
+/// not null. Throws InputError.
+TriMesh read_mesh(const std::filesystem::path& file, VertexAttributes* attributes = nullptr);
 
-/// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Velocities are
-/// not part of OBJ. `shift`: where vertices count from; it is added, since OBJ holds decimal
-/// numbers.
+/// Writes a Wavefront OBJ with normals where present; coordinates read back exactly. Of the
+/// attributes it holds the color alone, in sRGB behind the coordinates, as many programs read it.
+/// Velocities are not part of OBJ. `shift`: where vertices count from; it is added, since OBJ holds
+/// decimal numbers.
 void write_obj(const std::filesystem::path& file, const TriMesh& mesh, const Vec3d& shift = {},
-               const std::string& note = si_note);
+               const std::string& note = si_note, const VertexAttributes& attributes = {});
 /// Returns the OBJ line of a vertex.
 std::string obj_vertex(const Vec3f& v, const Vec3d& shift);
 

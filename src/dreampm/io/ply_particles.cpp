@@ -34,25 +34,28 @@ void check_frame(const std::string& file, const ParticleFrame& frame) {
     if (name.empty() || name.find_first_of(" \t\r\n") != std::string::npos || own_names.count(name))
       fail_input("{}: cannot be written: \"{}\" cannot name a column", file, name);
   }
-  for (const std::string& name : frame.material_names)
-    if (name.empty() || name.find_first_of("\r\n") != std::string::npos)
-      fail_input("{}: cannot be written: \"{}\" cannot name a material", file, name);
+  for (const auto& [names, what] : {std::pair{&frame.material_names, "material"}, {&frame.source_names, "source"}})
+    for (const std::string& name : *names)
+      if (name.empty() || name.find_first_of("\r\n") != std::string::npos)
+        fail_input("{}: cannot be written: \"{}\" cannot name a {}", file, name, what);
   for (std::size_t i = 0; i < n; ++i)
     if (frame.material[i] >= frame.material_names.size())
       fail_input("{}: cannot be written: particle {} is of material {}, but {} materials have names", file, i,
                  frame.material[i], frame.material_names.size());
 }
 
-// "material 0 water"
-void take_material_name(const PlyValues& body, const std::string& comment, std::vector<std::string>& names) {
-  constexpr std::string_view key = "material ";
+// "material 0 water", "source 0 tap": `what` is the first word.
+void take_name(const PlyValues& body, const std::string& comment, std::string_view what,
+               std::vector<std::string>& names) {
+  const std::string key = fmt::format("{} ", what);
   if (comment.rfind(key, 0) != 0) return;
+  const unsigned most = what == "material" ? 255 : 65535;
   const char* const end = comment.data() + comment.size();
   unsigned index = 0;
   const auto [stop, error] = std::from_chars(comment.data() + key.size(), end, index);
-  if (error != std::errc() || stop == end || *stop != ' ' || index > 255)
-    fail_input("{}: \"comment {}\" does not read \"comment material NUMBER NAME\" with a number of 0 to 255",
-               body.file(), comment);
+  if (error != std::errc() || stop == end || *stop != ' ' || index > most)
+    fail_input("{}: \"comment {}\" does not read \"comment {} NUMBER NAME\" with a number of 0 to {}", body.file(),
+               comment, what, most);
   if (names.size() <= index) names.resize(index + 1);
   names[index] = std::string(stop + 1, end);
 }
@@ -74,6 +77,8 @@ void write_particles(const fs::path& file, const ParticleFrame& frame, const std
   std::string head = fmt::format("ply\nformat binary_little_endian 1.0\ncomment dreampm particles, {}\n", note);
   for (std::size_t i = 0; i < frame.material_names.size(); ++i)
     head += fmt::format("comment material {} {}\n", i, frame.material_names[i]);
+  for (std::size_t i = 0; i < frame.source_names.size(); ++i)
+    head += fmt::format("comment source {} {}\n", i, frame.source_names[i]);
   head += ply_shift_comment(frame.shift);
   head += fmt::format("element vertex {}\n", frame.size());
   const bool exact = !frame.exact.empty();
@@ -121,7 +126,10 @@ ParticleFrame read_particles(const fs::path& file) {
   const auto id = ply_index(vertex, "id"), material = ply_index(vertex, "material");
 
   ParticleFrame frame;
-  for (const std::string& comment : header.comments) take_material_name(body, comment, frame.material_names);
+  for (const std::string& comment : header.comments) {
+    take_name(body, comment, "material", frame.material_names);
+    take_name(body, comment, "source", frame.source_names);
+  }
   frame.shift = ply_shift(header, body.file());
   const auto n = static_cast<std::size_t>(vertex.count);
   frame.position.resize(n);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <list>
 
-#include "dreampm/math/srgb.h"
 #include "dreampm/pictures/foam_grains.h"
 
 namespace dreampm {
@@ -53,7 +52,7 @@ SurfaceSettings surface_settings(const model::Scene& scene) {
   // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
   settings.voxel = std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), spacing / 8, 2 * spacing);
   settings.smooth = scene.surface.smooth;
-  settings.keep_field = scene.surface.format == model::SurfaceFormat::vdb;
+  settings.keep_field = scene.surface.type == model::SurfaceType::fog;
   return settings;
 }
 
@@ -88,8 +87,7 @@ Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vec
     TriMesh& mesh = meshes.emplace_back(content.mesh(m));
     if (mesh.triangles.empty()) continue;
     if (colored)
-      colors =
-          vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), linear_color(look.color));
+      colors = vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), mixing_of(look));
     if (cut) cut_mesh(mesh, colors, *cut);
     out.objects.push_back({&mesh, material_look(scene, m), colors});
   }

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "dreampm/base/narrow.h"
 #include "dreampm/base/order.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/pictures/sources.h"
 #include "dreampm/state/cell_pressure.h"
 #include "dreampm/state/particle_view.h"
 
@@ -42,8 +44,32 @@ void add_state(const World<R>& world, std::size_t s, std::string_view name, floa
     out.push_back(c ? static_cast<float>(particles.column(*c)[p]) : otherwise);
 }
 
+constexpr std::array<std::uint8_t, 4> white{255, 255, 255, 255};
+
 /// Of a column of a matrix, as `f_12`.
 bool is_on_diagonal(std::string_view column) { return column[column.size() - 2] == column.back(); }
+
+/// What follows from where particles came from: age [s], source and color, of those that are
+/// wanted.
+template <class R, class Wanted>
+void add_sources(const World<R>& world, const std::vector<BodyRange>& bodies, const Wanted& wanted, ParticleFrame& f) {
+  const bool age = wanted("age"), source = wanted("source"), color = wanted("color");
+  if (!age && !source && !color) return;
+  const Sources sources(world, bodies);
+  std::vector<std::array<std::uint8_t, 4>> colors;
+  for (const auto& own : sources.colors()) {
+    std::array<std::uint8_t, 4>& bytes = colors.emplace_back(white);
+    for (int c = 0; own && c < 3; ++c)
+      bytes[static_cast<std::size_t>(c)] = static_cast<std::uint8_t>(std::lround((*own)[c] * 255));
+  }
+  for (const std::int32_t id : f.id) {
+    const Sources::Source from = sources.of(static_cast<std::uint32_t>(id));
+    if (age) f.columns["age"].push_back(static_cast<float>(world.time - from.since));
+    if (source) f.columns["source"].push_back(static_cast<float>(from.number));
+    if (color) f.color.push_back(from.number < 0 ? white : colors[static_cast<std::size_t>(from.number)]);
+  }
+  if (source) f.source_names = sources.names();
+}
 
 template <class T>
 void reorder(std::vector<T>& v, const std::vector<std::uint32_t>& order) {
@@ -127,15 +153,7 @@ ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, con
       if (wanted(attribute))
         for (const std::string& column : columns_of(attribute)) add_column(world, motion, s, column, f.columns[column]);
   }
-  if (wanted("color")) {
-    f.color.assign(n, {255, 255, 255, 255});
-    for (const BodyRange& b : bodies)
-      if (b.color)
-        for (std::size_t i = 0; i < n; ++i)
-          if (static_cast<std::uint32_t>(f.id[i]) - b.first_id < b.count)
-            for (std::size_t c = 0; c < 3; ++c)
-              f.color[i][c] = static_cast<std::uint8_t>(std::lround((*b.color)[static_cast<int>(c)] * 255));
-  }
+  add_sources(world, bodies, wanted, f);
   const std::vector<std::uint32_t> order = order_of<std::int32_t>(f.id);
   reorder(f.position, order), reorder(f.velocity, order), reorder(f.id, order), reorder(f.material, order),
       reorder(f.color, order);

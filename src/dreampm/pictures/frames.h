@@ -25,7 +25,8 @@ template <class R>
 void add_column(const World<R>& world, const Motion<R>& motion, std::size_t s, std::string_view column,
                 std::vector<float>& out);
 
-/// Particles in the order of their ids. `attributes`: of model::particle_attributes; pressure, jp
+/// Particles in the order of their ids. `attributes`: of model::particle_attributes; of what came
+/// in from emitters, color is of its emitter. pressure, jp
 /// and f read MatterFields::state, all read id, position and motion.
 template <class R>
 ParticleFrame particle_frame(const World<R>& world, const Motion<R>& motion, const std::vector<BodyRange>& bodies,

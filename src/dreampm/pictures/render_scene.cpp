@@ -2,12 +2,13 @@
 
 #include <algorithm>
 
-#include "dreampm/base/parallel.h"
+#include "dreampm/base/error.h"
+#include "dreampm/math/look_color.h"
 #include "dreampm/math/srgb.h"
 #include "dreampm/render/texture_frame.h"
 #include "dreampm/setup/collider_mesh.h"
 #include "dreampm/setup/colliders.h"
-#include "dreampm/surface/cells.h"
+#include "dreampm/surface/carry.h"
 
 namespace dreampm {
 namespace {
@@ -15,14 +16,20 @@ namespace {
 /// Glass displaces what a liquid's surface reaches into.
 constexpr int collider_priority = 1;
 
-/// The color that all bodies of the material have, if they agree.
-std::optional<Vec3d> body_color(const model::Scene& scene, int material) {
+/// The color that all matter of the material has, if its bodies and emitters agree.
+std::optional<Vec3d> common_color(const model::Scene& scene, int material) {
   const std::string& name = scene.materials.at(static_cast<std::size_t>(material)).name;
   std::optional<Vec3d> color;
+  bool any_body = false;
   for (const model::Body& b : scene.bodies) {
     if (b.material != name) continue;
     if (!b.color || (color && !(*color == *b.color))) return std::nullopt;
-    color = b.color;
+    color = b.color, any_body = true;
+  }
+  for (const model::Emitter& e : scene.emitters) {
+    if (e.material != name || (any_body && !e.color)) continue;
+    if (!e.color || (color && !(*color == *e.color))) return std::nullopt;
+    color = e.color;
   }
   return color;
 }
@@ -49,55 +56,61 @@ Vec3f clamped(Vec3f v, const Box3d& room) {
 
 bool many_colored(const model::Scene& scene, int material) {
   const std::string& name = scene.materials.at(static_cast<std::size_t>(material)).name;
-  return !body_color(scene, material) && std::any_of(scene.bodies.begin(), scene.bodies.end(),
-                                                     [&](const auto& b) { return b.material == name && b.color; });
+  const auto has_color = [&](const auto& from) { return from.material == name && from.color; };
+  return !common_color(scene, material) && (std::any_of(scene.bodies.begin(), scene.bodies.end(), has_color) ||
+                                            std::any_of(scene.emitters.begin(), scene.emitters.end(), has_color));
 }
 
-BodyColors::BodyColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies) {
+Vec3f matter_color(const model::Scene& scene, int material) {
+  const auto common = common_color(scene, material);
+  return common ? linear_color(*common) : linear_color(material_look(scene, material));
+}
+
+MatterColors::MatterColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies) {
   for (const BodyRecord& r : bodies)
     for (const model::Body& b : scene.bodies)
       if (b.name == r.name && b.color) ranges_.push_back({r.first_id, r.first_id + r.count, linear_color(*b.color)});
+  for (const model::Emitter& e : scene.emitters)
+    if (e.color) emitters_[e.name] = linear_color(*e.color);
 }
 
-const Vec3f* BodyColors::of(std::int32_t particle) const {
-  const auto id = static_cast<std::uint64_t>(particle);
+const Vec3f* MatterColors::of(const ParticleFrame& frame, std::size_t i) const {
+  const auto id = static_cast<std::uint64_t>(frame.id[i]);
   const auto range =
       std::upper_bound(ranges_.begin(), ranges_.end(), id, [](std::uint64_t x, const Range& r) { return x < r.end; });
-  return range != ranges_.end() && id >= range->first ? &range->color : nullptr;
+  if (range != ranges_.end() && id >= range->first) return &range->color;
+  if (emitters_.empty()) return nullptr;
+  const auto source = frame.columns.find("source");
+  if (source == frame.columns.end())
+    fail_input(
+        "the particles have no column source, which gives the colors of emitters: simulate again with this scene");
+  if (source->second[i] < 0) return nullptr;
+  const auto emitter = emitters_.find(frame.source_names.at(static_cast<std::size_t>(source->second[i])));
+  return emitter != emitters_.end() ? &emitter->second : nullptr;
 }
 
 std::vector<Vec3f> particle_colors(const model::Scene& scene, int material, const ParticleFrame& frame,
                                    const std::vector<BodyRecord>& bodies) {
   const std::string& name = scene.materials[std::size_t(material)].name;
-  const Vec3f plain = linear_color(scene.render.looks.at(name).color);
-  const BodyColors of_bodies(scene, bodies);
+  const Vec3f plain = matter_color(scene, material);
+  const MatterColors own_colors(scene, bodies);
   std::vector<Vec3f> colors;
   for (std::size_t i = 0; i < frame.size(); ++i) {
     if (frame.material_names.at(frame.material[i]) != name) continue;
-    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    const Vec3f* const own = own_colors.of(frame, i);
     colors.push_back(own ? *own : plain);
   }
   return colors;
 }
 
 std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
-                                 float spacing, const Vec3f& otherwise) {
-  const float radius = 2 * spacing;
-  const surface::CellGrid cells(positions, radius);
-  std::vector<Vec3f> out(mesh.vertices.size(), otherwise);
-  parallel_for(out.size(), 512, [&](std::size_t v) {
-    const Vec3f x = mesh.vertices[v], reach{radius, radius, radius};
-    Vec3f sum{};
-    float weight = 0;
-    surface::for_cells(cells, x - reach, x + reach, [&](std::size_t c) {
-      for (std::uint32_t i = cells.first[c]; i < cells.first[c + 1]; ++i) {
-        const float t = 1 - length2(positions[cells.order[i]] - x) / (radius * radius);
-        if (t > 0) sum += colors[cells.order[i]] * (t * t * t * t), weight += t * t * t * t;
-      }
-    });
-    if (weight > 0) out[v] = sum / weight;
-  });
-  return out;
+                                 float spacing, Mixing mixing) {
+  if (mesh.vertices.empty()) return {};
+  return surface::carry_colors(mesh.vertices, {positions, spacing}, colors, mixing);
+}
+
+Mixing mixing_of(const model::Look& look) {
+  return look.type == model::LookType::dielectric ? Mixing::clear : Mixing::opaque;
 }
 
 ColliderModels::ColliderModels(const model::Scene& scene, const Vec3d& shift) : shift_(shift) {
@@ -248,7 +261,7 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time, cons
 
 model::Look material_look(const model::Scene& scene, int material) {
   model::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
-  look.color = body_color(scene, material).value_or(look.color);
+  look.color = common_color(scene, material).value_or(look.color);
   return look;
 }
 

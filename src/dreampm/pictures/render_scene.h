@@ -2,13 +2,16 @@
 // bodies bring.
 #pragma once
 #include <list>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
 #include "dreampm/level_set/mesh_sequence.h"
 #include "dreampm/math/motion_path.h"
+#include "dreampm/math/pigments.h"
 #include "dreampm/render/cut.h"
 #include "dreampm/render/from_scene.h"
 
@@ -17,15 +20,21 @@ namespace dreampm {
 /// The look of a material. One whose bodies all have one color takes that.
 model::Look material_look(const model::Scene& scene, int material);
 
-/// Have the material's bodies different colors? (Those without one have the look's.)
+/// Have the material's bodies and emitters different colors? (Bodies without one have the look's;
+/// emitters without one do not count.)
 bool many_colored(const model::Scene& scene, int material);
 
-/// The colors that bodies have of their own, linear. `bodies` as in run.json.
-class BodyColors {
+/// Linear color of the material's matter: the one that all of it has, else that of its look.
+Vec3f matter_color(const model::Scene& scene, int material);
+
+/// The colors that bodies and emitters have of their own, linear. `bodies` as in run.json.
+class MatterColors {
  public:
-  BodyColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies);
-  /// That of the particle's body; null for one without, and for matter of no body.
-  const Vec3f* of(std::int32_t particle) const;
+  MatterColors(const model::Scene& scene, const std::vector<BodyRecord>& bodies);
+  /// That of the body or the emitter of the frame's i-th particle; null where it has none, and for
+  /// matter of neither. Throws InputError where an emitter has one and the frame lacks the column
+  /// `source`.
+  const Vec3f* of(const ParticleFrame& frame, std::size_t i) const;
 
  private:
   struct Range {
@@ -33,17 +42,21 @@ class BodyColors {
     Vec3f color;
   };
   std::vector<Range> ranges_;  ///< ascending ids: bodies are numbered one after the other
+  std::map<std::string, Vec3f> emitters_;
 };
 
-/// Linear color of each particle of the material, in the frame's order, from the body that it came
-/// from. `bodies` as in run.json.
+/// Linear color of each particle of the material, in the frame's order, from the body or the
+/// emitter that it came from. `bodies` as in run.json.
 std::vector<Vec3f> particle_colors(const model::Scene& scene, int material, const ParticleFrame& frame,
                                    const std::vector<BodyRecord>& bodies);
 
-/// Color of each vertex from the particles around it, the nearer the more; `otherwise` where none
-/// is near.
+/// Color of each vertex: those of the particles around it, mixed as that matter mixes them
+/// (math/pigments.h), the nearer the more. Meshes without vertices need no
+/// particles.
 std::vector<Vec3f> vertex_colors(const TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> colors,
-                                 float spacing, const Vec3f& otherwise);
+                                 float spacing, Mixing mixing);
+/// How the colors of matter of that look mix.
+Mixing mixing_of(const model::Look& look);
 
 /// The plane of the scene's cut, if the thing of that name is cut.
 std::optional<CutPlane> cut_of(const model::Scene& scene, const std::string& name, const Vec3d& shift);

@@ -8,6 +8,7 @@
 #include "dreampm/pictures/frames.h"
 #include "dreampm/pictures/render_scene.h"
 #include "dreampm/pipeline/surface_stage.h"
+#include "dreampm/scene/attributes.h"
 #include "dreampm/setup/start.h"
 #include "dreampm/surface/surface.h"
 
@@ -47,19 +48,27 @@ StageEstimate estimate_stages(const model::Scene& scene, std::size_t particles) 
                           : mesh_bytes * std::pow(double(particles), 0.75) * std::pow(0.5 / scene.surface.voxel, 2);
   e.disk_bytes = static_cast<std::uint64_t>(bytes + frames * mesh);
   e.memory_bytes = static_cast<std::uint64_t>(floor_memory + memory_per_mesh_byte * mesh);
+  if (scene.foam) e.memory_bytes = std::max(e.memory_bytes, estimate_foam(*scene.foam, particles).memory_bytes);
   return e;
 }
 
-std::size_t particle_file_bytes(const model::Output& output) {
+FoamEstimate estimate_foam(const model::Foam& foam, std::uint64_t particles) {
+  // Two frames of matter and the fields of both; two states of a grain; its row of a file.
+  constexpr std::uint64_t a_particle = 300, a_grain = 140, a_row = 41;
+  const auto most = static_cast<std::uint64_t>(foam.most);
+  return {most, a_particle * particles + a_grain * most, a_row * most};
+}
+
+std::size_t particle_file_bytes(const model::Scene& scene) {
   std::size_t bytes = 29;  // place, velocity, id, material
-  for (const std::string& a : output.attributes)
+  for (const std::string& a : scene::kept_attributes(scene))
     if (a != "velocity") bytes += a == "f" ? 36 : 4;
   return bytes;
 }
 
 std::uint64_t disk_estimate(const model::Scene& scene, std::size_t particles) {
   const auto frames = static_cast<std::uint64_t>(frames_of(scene));
-  return frames * particles * particle_file_bytes(scene.output) + checkpoints_kept * particles * 64 +
+  return frames * particles * particle_file_bytes(scene) + checkpoints_kept * particles * 64 +
          estimate_stages(scene, particles).disk_bytes;
 }
 

@@ -67,9 +67,9 @@ void count_by_scene(ParticleFrame& frame, const ClipInfo& clip, const std::strin
 std::vector<Vec3f> colors_of(const RunFolder& run, const ClipInfo& clip, const ParticleFrame& frame) {
   std::vector<Vec3f> colors;
   if (frame.color.empty()) return colors;
-  const BodyColors of_bodies(run.scene, run.record.bodies);
+  const MatterColors own_colors(run.scene, run.record.bodies);
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const Vec3f* const own = of_bodies.of(frame.id[i]);
+    const Vec3f* const own = own_colors.of(frame, i);
     colors.push_back(own ? *own : clip.materials[frame.material[i]].color);
   }
   return colors;
@@ -168,8 +168,8 @@ ClipFrame load(const RunFolder& run, const ClipInfo& clip, const std::optional<O
   }
   if (clip.foam) frame.foam = foam_frame(run, clip, number), clip.axes.apply(frame.foam);
   for (const int m : clip.meshed) {
-    frame.meshes.push_back(read_mesh(surface_file(run, m, number)));
-    clip.axes.apply(frame.meshes.back());
+    frame.meshes.push_back(read_mesh(surface_file(run, m, number), &frame.attributes.emplace_back()));
+    clip.axes.apply(frame.meshes.back()), clip.axes.apply(frame.attributes.back());
   }
   if (objects) frame.objects = objects->in(run.frame_record(number));
   return frame;

@@ -6,6 +6,7 @@
 #include "dreampm/base/hash.h"
 #include "dreampm/base/log.h"
 #include "dreampm/io/numbered.h"
+#include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/foam_limits.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/foam.h"
@@ -106,8 +107,7 @@ class FoamMaker {
 void say_memory(const RunFolder& run, const std::vector<FoamingKind>& kinds) {
   std::uint64_t particles = 0;
   for (const FrameRecord& f : run.record.frames) particles = std::max(particles, f.particles);
-  constexpr double a_particle = 300, a_foam = 140;  // bytes: two frames and the fields of both; two states
-  const double bytes = a_particle * static_cast<double>(particles) + a_foam * static_cast<double>(run.scene.foam->most);
+  const double bytes = static_cast<double>(estimate_foam(*run.scene.foam, particles).memory_bytes);
   for (const FoamingKind& k : kinds)
     info("foam: {}scale {:.3g} m, {:.3g} per m^3 and s at the limits, radius {:.3g} mm", k.rules.dust ? "dust: " : "",
          k.rules.scale, k.rules.rate, 1e3f * k.rules.radius);

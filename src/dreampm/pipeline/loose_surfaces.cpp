@@ -1,4 +1,7 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
@@ -8,10 +11,13 @@
 #include "dreampm/import/point_cloud.h"
 #include "dreampm/import/point_file.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/math/srgb.h"
 #include "dreampm/pictures/frames.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
+#include "dreampm/surface/carry.h"
 #include "dreampm/surface/surface.h"
+#include "dreampm/surface/vdb.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -25,6 +31,57 @@ MovingCloud read_cloud(const std::string& file) {
   return moving_cloud(std::move(model), file);
 }
 
+/// What a mesh of a cloud can hold, and whether the cloud has what that is made of.
+struct CloudAttribute {
+  const char* name;
+  const char* made_of;
+  bool (*there)(const MovingCloud&);
+};
+constexpr std::array<CloudAttribute, 3> known_attributes{{
+    {"velocity", "velocities", [](const MovingCloud& c) { return !c.velocities.empty(); }},
+    {"vorticity", "velocities", [](const MovingCloud& c) { return !c.velocities.empty(); }},
+    {"color", "colors", [](const MovingCloud& c) { return !c.colors.empty(); }},
+}};
+
+bool wants(const LooseSurfaces& request, std::string_view name) {
+  const auto& wanted = request.attributes;
+  return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+}
+
+void check_attributes(const MovingCloud& cloud, const LooseSurfaces& request, const std::string& file) {
+  for (const std::string& name : request.attributes) {
+    const auto known = std::find_if(known_attributes.begin(), known_attributes.end(),
+                                    [&](const CloudAttribute& a) { return name == a.name; });
+    if (known == known_attributes.end())
+      fail_input("no attribute {}: of files there are {}", name, fmt::join(cloud_attributes(), ", "));
+    if (!known->there(cloud)) fail_input("{}: has no {}, of which attribute {} is made", file, known->made_of, name);
+  }
+}
+
+std::vector<float> flat(const std::vector<Vec3f>& vectors) {
+  std::vector<float> values;
+  values.reserve(3 * vectors.size());
+  for (const Vec3f& v : vectors) values.insert(values.end(), {v.x, v.y, v.z});
+  return values;
+}
+
+VertexAttributes attributes_of(const TriMesh& mesh, const MovingCloud& cloud, const SurfaceInput& input,
+                               const LooseSurfaces& request) {
+  VertexAttributes out;
+  const surface::Carriers carriers{input.positions, input.spacing};
+  if (wants(request, "color")) {
+    std::vector<Vec3f> colors;
+    for (const auto& c : cloud.colors) colors.push_back(linear_color(Vec3d{c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}));
+    out.push_back(
+        {"color", AttributeKind::color, flat(surface::carry_colors(mesh.vertices, carriers, colors, Mixing::opaque))});
+  }
+  if (wants(request, "vorticity"))
+    out.push_back({"vorticity", AttributeKind::vector,
+                   flat(surface::carry_vorticity(mesh.vertices, carriers, input.velocities))});
+  return out;
+}
+
+/// Writes the mesh, or the volume, of a cloud.
 void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path& target) {
   const double spacing = *request.spacing;
   Box3d box;
@@ -40,7 +97,13 @@ void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path
   SurfaceSettings settings;
   settings.voxel = static_cast<float>(request.voxel * spacing);
   settings.smooth = request.smooth;
-  write_mesh(target, reconstruct(input, settings).mesh, shift, "in the unit and the axes of its particles");
+  settings.keep_field = request.type == model::SurfaceType::fog;
+  SurfaceResult result = reconstruct(input, settings);
+  if (result.field) return write_fog_vdb(target, *result.field, shift);
+  if (request.type == model::SurfaceType::sdf) return write_level_set_vdb(target, result.mesh, settings.voxel, shift);
+  const VertexAttributes attributes = attributes_of(result.mesh, cloud, input, request);
+  if (!request.attributes.empty() && !wants(request, "velocity")) result.mesh.velocities.clear();
+  write_mesh(target, result.mesh, shift, "in the unit and the axes of its particles", attributes);
 }
 
 void check_spacing(const LooseSurfaces& request) {
@@ -53,8 +116,18 @@ void check_spacing(const LooseSurfaces& request) {
 
 }  // namespace
 
+std::vector<std::string> cloud_attributes() {
+  std::vector<std::string> names;
+  for (const CloudAttribute& a : known_attributes) names.emplace_back(a.name);
+  return names;
+}
+
 std::vector<fs::path> surface_files(const LooseSurfaces& request) {
-  const std::vector<fs::path> names = loose_names(request.files, request.out, ".ply");
+  const bool volume = request.type != model::SurfaceType::mesh;
+  if (volume && !request.attributes.empty())
+    fail_input("--attributes are of the vertices of meshes; --type {} has none",
+               request.type == model::SurfaceType::fog ? "fog" : "sdf");
+  const std::vector<fs::path> names = loose_names(request.files, request.out, volume ? ".vdb" : ".ply");
   check_spacing(request);
   Progress progress("surface: file", names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -63,6 +136,7 @@ std::vector<fs::path> surface_files(const LooseSurfaces& request) {
     const MovingCloud cloud = read_cloud(request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
+    check_attributes(cloud, request, request.files[i]);
     make_folder(request.out);
     wrap(cloud, request, names[i]);
   }

@@ -24,6 +24,7 @@
 #include "dreampm/run/particle_observer.h"
 #include "dreampm/run/probe_writer.h"
 #include "dreampm/run/scene_engine.h"
+#include "dreampm/scene/attributes.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/setup/fixed_dt.h"
 
@@ -105,7 +106,7 @@ struct WatchedScene {
               std::get<std::unique_ptr<Backend<R>>>(make_backend(task.options.backend, isa))),
         totals(scene.engine()),
         particles(scene.engine(), scene.start().bodies,
-                  {task.scene.output.attributes,
+                  {scene::kept_attributes(task.scene),
                    file_shift(task.scene.space.min, task.scene.space.end(), task.scene.space.spacing)},
                   task.particles()),
         fill(task.scene, regions_of(scene.start().world.colliders), task.options.folder),

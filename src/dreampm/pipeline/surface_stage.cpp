@@ -7,6 +7,7 @@
 #include "dreampm/base/log.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/io/ply.h"
+#include "dreampm/pictures/surface_attributes.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/surface/vdb.h"
 #include "dreampm/surface/volume_taken.h"
@@ -14,6 +15,20 @@
 namespace dreampm {
 namespace fs = std::filesystem;
 namespace {
+
+/// What names a level set beside the fog of the same surface.
+constexpr const char* distances = "-sdf";
+
+std::string stem_of(const RunFolder& run, int material) {
+  const bool several = meshed_materials(run.scene).size() > 1;
+  return several ? run.scene.materials[std::size_t(material)].name : "surface";
+}
+
+/// The volume beside the mesh, of a scene that asks for one.
+fs::path volume_file(const RunFolder& run, int material, int frame) {
+  const std::string kind = run.scene.surface.type == model::SurfaceType::sdf ? distances : "";
+  return run.folder / "surface" / numbered(stem_of(run, material) + kind, frame, ".vdb");
+}
 
 std::string settings_hash(const RunFolder& run) {
   Hash64 hash;
@@ -29,9 +44,11 @@ std::vector<fs::path> possible_files(const RunFolder& run, int frame) {
   std::vector<fs::path> files;
   std::vector<std::string> stems{"surface"};
   for (const model::Material& m : run.scene.materials) stems.push_back(m.name);
-  for (const std::string& stem : stems)
+  for (const std::string& stem : stems) {
     for (const char* extension : {".ply", ".obj", ".vdb"})
       files.push_back(run.folder / "surface" / numbered(stem, frame, extension));
+    files.push_back(run.folder / "surface" / numbered(stem + distances, frame, ".vdb"));
+  }
   return files;
 }
 
@@ -56,11 +73,17 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
   const model::Scene& scene = run.scene;
   const MaterialParticles particles = particles_of(scene, material, frame);
   const SurfaceInput input = surface_input(scene, particles, frame.shift);
-  const SurfaceResult result = reconstruct(input, surface_settings(scene));
+  const SurfaceSettings settings = surface_settings(scene);
+  SurfaceResult result = reconstruct(input, settings);
+  const VertexAttributes attributes =
+      surface_attributes(scene, material, frame, result.mesh, run.record.bodies, run.particles(number).string());
+  if (!has_surface_attribute(scene, "velocity")) result.mesh.velocities.clear();
+  if (result.field) write_fog_vdb(volume_file(run, material, number), *result.field, frame.shift);
+  if (scene.surface.type == model::SurfaceType::sdf)
+    write_level_set_vdb(volume_file(run, material, number), result.mesh, settings.voxel, frame.shift);
   if (scene.surface.format == model::SurfaceFormat::obj)
-    write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift);
-  if (result.field) write_vdb(surface_file(run, material, number, ".vdb"), *result.field, frame.shift);
-  write_mesh(surface_file(run, material, number), result.mesh, frame.shift);
+    write_obj(surface_file(run, material, number, ".obj"), result.mesh, frame.shift, si_note, attributes);
+  write_mesh(surface_file(run, material, number), result.mesh, frame.shift, si_note, attributes);
   const double spacing = scene.space.spacing;
   record_volume(run, {number, scene.materials[std::size_t(material)].name,
                       static_cast<double>(particles.position.size()) * spacing * spacing * spacing, result.volume,
@@ -70,9 +93,7 @@ void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int 
 }  // namespace
 
 fs::path surface_file(const RunFolder& run, int material, int frame, const std::string& extension) {
-  const bool several = meshed_materials(run.scene).size() > 1;
-  const std::string stem = several ? run.scene.materials[std::size_t(material)].name : "surface";
-  return run.folder / "surface" / numbered(stem, frame, extension);
+  return run.folder / "surface" / numbered(stem_of(run, material), frame, extension);
 }
 
 std::function<Identity(int frame)> surface_identity(const RunFolder& run) {
@@ -142,7 +163,7 @@ StageResult surface_stage(RunFolder& run, const FrameRange& frames) {
     for (const int m : materials) {
       files.push_back(surface_file(run, m, f));
       if (run.scene.surface.format == model::SurfaceFormat::obj) files.push_back(surface_file(run, m, f, ".obj"));
-      if (run.scene.surface.format == model::SurfaceFormat::vdb) files.push_back(surface_file(run, m, f, ".vdb"));
+      if (run.scene.surface.type != model::SurfaceType::mesh) files.push_back(volume_file(run, m, f));
     }
     return files;
   };

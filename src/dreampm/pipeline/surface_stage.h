@@ -21,8 +21,9 @@ std::string no_surface(const RunFolder& run, const std::vector<int>& frames);
 /// a mesh.
 std::vector<std::string> volume_lines(const RunRecord& record);
 
-/// Makes the meshes of these frames that are not up to date: PLY, and OBJ or VDB beside it if
-/// surface.format says so. Volumes of meshes and particles go into run.json.
+/// Makes the meshes of these frames that are not up to date: PLY, and beside it OBJ if
+/// surface.format says so, and a volume if surface.type does: surface_000001.vdb, a fog, or
+/// surface-sdf_000001.vdb, a level set. Volumes of meshes and particles go into run.json.
 StageResult surface_stage(RunFolder& run, const FrameRange& frames = {});
 
 }  // namespace dreampm

@@ -3,6 +3,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/hash.h"
+#include "dreampm/scene/attributes.h"
 #include "dreampm/scene/files.h"
 #include "dreampm/scene/parse.h"
 #include "dreampm/scene/sections.h"
@@ -39,7 +40,7 @@ void add_simulation(Hash64& hash, model::Scene s) {
   s.time.frames = 1;
   for (Body& b : s.bodies) forget_paths(b.shape), b.color.reset();
   for (Collider& c : s.colliders) forget_paths(c.shape);
-  for (Emitter& e : s.emitters) forget_paths(e.shape);
+  for (Emitter& e : s.emitters) forget_paths(e.shape), e.color.reset();
   for (Sink& k : s.sinks) forget_paths(k.shape);
   YamlNode decides = YamlNode::map();
   decides.put("seed", write_count(static_cast<std::int64_t>(s.seed)));
@@ -59,9 +60,25 @@ void add_simulation(Hash64& hash, model::Scene s) {
 void add_colors(Hash64& hash, const model::Scene& s) {
   for (const Body& b : s.bodies)
     hash.add(std::string_view(b.color ? fmt::format("{} {} {}", b.color->x, b.color->y, b.color->z) : "none"));
+  for (const Emitter& e : s.emitters)
+    if (e.color) hash.add(std::string_view(fmt::format("{} {}", e.name, yaml_list(*e.color))));
 }
 
 void add_text(Hash64& hash, const YamlNode& map) { hash.add(std::string_view(write_yaml(map))); }
+
+/// Files beside the mesh do not change it. What earlier versions did not have is left out where it
+/// is as they did it.
+void add_surface(Hash64& hash, const model::Scene& s) {
+  Surface of_mesh = s.surface;
+  of_mesh.format = SurfaceFormat::ply;
+  YamlNode map = write_map(of_mesh, surface_schema());
+  std::erase_if(map.entries, [&](const Entry& e) {
+    return e.key == "type" || (e.key == "attributes" && of_mesh.attributes == Surface{}.attributes);
+  });
+  add_text(hash, map);
+  const auto& names = of_mesh.attributes;
+  if (std::find(names.begin(), names.end(), "color") != names.end()) add_colors(hash, s);
+}
 
 /// Probes change no state, but only a new simulation measures with new ones.
 void add_probes(Hash64& hash, model::Scene s) {
@@ -92,6 +109,7 @@ std::string scene_hash(const model::Scene& scene, Part part, const std::string& 
     Output o = scene.output;
     o.folder.clear();
     o.checkpoint_every = 0;
+    o.attributes = kept_attributes(scene);
     add_text(hash, write_map(o, output_schema()));
     add_probes(hash, scene);
     if (std::find(o.attributes.begin(), o.attributes.end(), "color") != o.attributes.end()) add_colors(hash, scene);
@@ -106,9 +124,7 @@ std::string scene_hash(const model::Scene& scene, Part part, const std::string& 
     add_text(later, write_map(f, foam_schema()));
     return later.hex();
   }
-  Surface s = scene.surface;
-  s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
-  add_text(later, write_map(s, surface_schema()));
+  add_surface(later, scene);
   if (part >= Part::render) {
     Render r = scene.render;
     r.format = model::PictureFormat::png;  // it adds files; the picture is the same

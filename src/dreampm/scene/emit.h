@@ -26,11 +26,10 @@ enum class Part {
 };
 
 /// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about,
-/// output.folder, how often checkpoints are written, surface.format and
-/// render.format (files beside the same),
-/// time.frames (more frames continue a run), where meshes lie (their bytes count). `simulation`:
-/// the hash of that part as a run's record has it. The parts from surface on then need no model
-/// file.
+/// output.folder, how often checkpoints are written, surface.type and .format and render.format
+/// (files beside the same), time.frames (more frames continue a run), where meshes lie (their bytes
+/// count). `simulation`: the hash of that part as a run's record has it. The parts from surface on
+/// then need no model file.
 std::string scene_hash(const model::Scene& scene, Part part, const std::string& simulation = {});
 
 /// The same for what one of the scene's probes measures.

@@ -6,32 +6,54 @@
 namespace dreampm::scene {
 namespace {
 
-std::vector<std::string> attribute_words() {
-  return {model::particle_attributes.begin(), model::particle_attributes.end()};
+/// A format of which there is one so far.
+template <class T>
+Field<T> only_word(std::string key, std::string word) {
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
+                    read_word(in.problems, n, path, std::vector<std::string>{word});
+                  },
+                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
+      .takes(word_info({word}));
 }
 
-Field<Output> attributes() {
-  return Field<Output>{"attributes",
-                       [](Reading& in, const YamlNode& n, const std::string& path, Output& out) {
-                         if (!expect_list(in.problems, n, path)) return;
-                         const std::vector<std::string> words = attribute_words();
-                         out.attributes.clear();
-                         for (std::size_t i = 0; i < n.items.size(); ++i) {
-                           const auto w = read_word(in.problems, n.items[i], fmt::format("{}[{}]", path, i), words);
-                           if (!w) continue;
-                           if (std::find(out.attributes.begin(), out.attributes.end(), *w) != out.attributes.end())
-                             in.problems.error(n.items[i].at, fmt::format("{} has '{}' twice", path, *w));
-                           else
-                             out.attributes.push_back(*w);
-                         }
-                       },
-                       [](const Output& o, const std::string& k, YamlNode& map) {
-                         std::vector<YamlNode> items;
-                         for (const std::string& a : o.attributes) items.push_back(YamlNode::scalar(a));
-                         map.put(k, YamlNode::list(std::move(items)));
-                       }}
-      .takes(list_info(word_info(attribute_words()), 0))
-      .says("What particle files hold beside positions, identities and materials.");
+/// A list of words, each at most once.
+template <class T, std::size_t n>
+Field<T> words(std::string key, std::vector<std::string> T::* member, const std::array<const char*, n>& known) {
+  const std::vector<std::string> all(known.begin(), known.end());
+  return Field<T>{std::move(key),
+                  [member, all](Reading& in, const YamlNode& node, const std::string& path, T& out) {
+                    if (!expect_list(in.problems, node, path)) return;
+                    std::vector<std::string>& list = out.*member;
+                    list.clear();
+                    for (std::size_t i = 0; i < node.items.size(); ++i) {
+                      const auto w = read_word(in.problems, node.items[i], fmt::format("{}[{}]", path, i), all);
+                      if (!w) continue;
+                      if (std::find(list.begin(), list.end(), *w) != list.end())
+                        in.problems.error(node.items[i].at, fmt::format("{} has '{}' twice", path, *w));
+                      else
+                        list.push_back(*w);
+                    }
+                  },
+                  [member](const T& t, const std::string& k, YamlNode& map) {
+                    std::vector<YamlNode> items;
+                    for (const std::string& a : t.*member) items.push_back(YamlNode::scalar(a));
+                    map.put(k, YamlNode::list(std::move(items)));
+                  }}
+      .takes(list_info(word_info(all), 0));
+}
+
+/// `vdb`, of earlier versions, is what `type: fog` is now.
+Field<Surface> surface_format() {
+  Field<Surface> f = choice("format", &Surface::format, {"ply", "obj"})
+                         .says("The format of the meshes; `obj` is written beside `ply`.");
+  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Surface& out) {
+    if (n.kind == YamlNode::Kind::scalar && n.text == "vdb")
+      out.type = out.type == model::SurfaceType::mesh ? model::SurfaceType::fog : out.type;
+    else
+      read(in, n, path, out);
+  };
+  return f;
 }
 
 /// Even sides, because yuv420p video halves them.
@@ -196,8 +218,9 @@ const Schema<Output>& output_schema() {
       text("folder", &Output::folder)
           .takes(text_info("a folder"))
           .says("Where the run goes, from the working folder; absent: out/NAME, or out/NAME-VARIANT."),
-      nested<Output>("particles",
-                     {only_word<Output>("format", "ply").says("The format of particle files."), attributes()})
+      nested<Output>("particles", {only_word<Output>("format", "ply").says("The format of particle files."),
+                                   words("attributes", &Output::attributes, model::particle_attributes)
+                                       .says("What particle files hold beside positions, identities and materials.")})
           .says("The particle files, one a frame."),
       nested<Output>("checkpoint", {count("every", &Output::checkpoint_every, 0, 1000000)
                                         .says("Frames from checkpoint to checkpoint; 0: none.")})
@@ -210,8 +233,13 @@ const Schema<Surface>& surface_schema() {
   static const Schema<Surface> schema{
       number("voxel", &Surface::voxel, between(0.1, 2, "dx")).says("The resolution of the surface."),
       count("smooth", &Surface::smooth, 0, 10).says("Rounds of smoothing."),
-      choice("format", &Surface::format, {"ply", "obj", "vdb"})
-          .says("The format of the surfaces; `obj` and `vdb` are written beside `ply`."),
+      words("attributes", &Surface::attributes, model::surface_attributes)
+          .says("What the vertices of surfaces hold beside places and normals."),
+      choice("type", &Surface::type, {"mesh", "fog", "sdf"})
+          .says(
+              "`fog` and `sdf` write a volume for OpenVDB beside the mesh: the density that the mesh is a contour of, "
+              "or the distance from the mesh."),
+      surface_format(),
   };
   return schema;
 }

@@ -15,6 +15,7 @@ struct BodyRange {
   std::string name;
   std::uint32_t first_id = 0, count = 0;
   std::optional<Vec3d> color;
+  double time = 0;  ///< s, when it came in
 };
 
 /// The largest speed [m/s] that is expected, which liquids are made stiff for.

@@ -86,7 +86,7 @@ void add_inflow(World<double>& world, const model::Scene& scene, const Meshes& m
       }
       for (const Key<double>& key : e.flow) one.speed.push_back({key.t, key.value / area});
     }
-    one.swirl = e.swirl, one.jitter = e.jitter;
+    one.swirl = e.swirl, one.jitter = e.jitter, one.color = e.color;
     one.start = e.start, one.stop = e.stop.value_or(one.stop);
     one.pool = static_cast<std::uint64_t>(e.pool), one.recycle = e.recycle;
     one.path = motion_path(e.motion, e.shape, spacing, meshes);

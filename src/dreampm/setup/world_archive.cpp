@@ -58,6 +58,13 @@ std::vector<double> numbers_of(const Pose& pose) {
 }
 Pose pose_from(const std::vector<double>& n) { return {{n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]}}; }
 
+/// True if a member is what it is in a new world.
+template <class T>
+bool is_unset(const T& value, const T& unset) {
+  return value == unset;
+}
+bool is_unset(const std::vector<Arrival>& value, const std::vector<Arrival>&) { return value.empty(); }
+
 template <class R>
 class WorldWriter {
  public:
@@ -74,7 +81,7 @@ class WorldWriter {
             return;
           }
         if constexpr (F::use.sparse)
-          if (value == unset) return;
+          if (is_unset(value, unset)) return;
         put(name, value);
       }
     });
@@ -126,6 +133,13 @@ class WorldWriter {
       const auto& [p, l] = std::tie(s.momentum, s.angular);
       to_.add(name + "/" + s.name, std::vector<double>{static_cast<double>(s.taken), p.x, p.y, p.z, l.x, l.y, l.z});
     }
+  }
+  void put(const std::string& name, const std::vector<Arrival>& arrivals) {
+    std::vector<double> numbers;
+    for (const Arrival& a : arrivals)
+      numbers.insert(numbers.end(), {static_cast<double>(a.first_id), static_cast<double>(a.count),
+                                     static_cast<double>(a.emitter), a.time});
+    to_.add(name, numbers);
   }
   void put(const std::string& name, const GridFields<R>& grid) { members(name + "/", grid, world_); }
 
@@ -244,6 +258,26 @@ class WorldReader {
       s.taken = archived_count(from_, name + "/" + s.name, sums[0]);
       s.momentum = {sums[1], sums[2], sums[3]}, s.angular = {sums[4], sums[5], sums[6]};
     }
+  }
+  void get(const std::string& name, std::vector<Arrival>& arrivals) {
+    const auto numbers = from_.read<double>(name);
+    if (numbers.size() % 4 != 0) from_.refuse(name, fmt::format("{} numbers are no batches of matter", numbers.size()));
+    arrivals.clear();
+    const auto id = [&](double n) {
+      if (const auto whole_one = whole<std::uint32_t>(n)) return *whole_one;
+      from_.refuse(name, fmt::format("{} is no number of particles", n));
+    };
+    for (std::size_t i = 0; i < numbers.size(); i += 4) {
+      arrivals.push_back({id(numbers[i]), id(numbers[i + 1]), id(numbers[i + 2]), numbers[i + 3]});
+      if (arrivals.back().emitter >= world_.emitters.size())
+        from_.refuse(name, fmt::format("there is no emitter of number {}", arrivals.back().emitter));
+    }
+    const auto overlap = [](const Arrival& a, const Arrival& b) { return b.first_id - a.first_id < a.count; };
+    const auto falls = [](const Arrival& a, const Arrival& b) { return b.first_id < a.first_id; };
+    if (std::adjacent_find(arrivals.begin(), arrivals.end(), [&](const Arrival& a, const Arrival& b) {
+          return falls(a, b) || overlap(a, b);
+        }) != arrivals.end())
+      from_.refuse(name, "batches of matter share particles, or do not rise by their ids");
   }
   void get(const std::string& name, GridFields<R>& grid) {
     std::vector<Vec3i> blocks;

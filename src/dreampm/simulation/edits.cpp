@@ -254,7 +254,7 @@ void Simulation::add(const model::Body& body) {
       impl_->with_engine([&](auto& engine) { return assemble(alone, scene().file(), engine.world().colliders); });
   const std::uint32_t first = impl_->insert(m, matter.seeds.at(m), fmt::format("body {}", body.name));
   const auto count = static_cast<std::uint32_t>(matter.seeds.at(m).size());
-  impl_->state.bodies.push_back({body.name, first, count, alone.bodies.at(0).color});
+  impl_->state.bodies.push_back({body.name, first, count, alone.bodies.at(0).color, time()});
   impl_->state.added.push_back(alone.bodies.at(0));
 }
 

@@ -136,7 +136,7 @@ const ParticleFrame& Simulation::Impl::frame() const {
       const auto& description = state.scene.model();
       engine.download(MatterFields::id | MatterFields::position | MatterFields::motion);
       const model::Space& space = description.space;
-      return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity"},
+      return particle_frame(engine.world(), engine.motion(), state.bodies, {"velocity", "source"},
                             file_shift(space.min, space.end(), space.spacing));
     });
   return *frame_;
@@ -239,13 +239,16 @@ std::shared_ptr<const Simulation::Impl::View> Simulation::Impl::view(std::size_t
       view.J[i] = static_cast<float>(motion.volume_ratio[p]);
       ++i;
     }
-    for (const BodyRange& body : state.bodies) {
-      if (!body.color) continue;
-      const auto first = std::lower_bound(view.id.begin(), view.id.end(), body.first_id),
-                 end = std::lower_bound(first, view.id.end(), body.first_id + body.count);
+    const auto paint = [&](std::uint32_t first_id, std::uint32_t count, const std::optional<Vec3d>& color) {
+      if (!color) return;
+      const auto first = std::lower_bound(view.id.begin(), view.id.end(), first_id),
+                 end = std::lower_bound(first, view.id.end(), first_id + count);
       std::fill(view.color.begin() + (first - view.id.begin()), view.color.begin() + (end - view.id.begin()),
-                linear_color(*body.color));
-    }
+                linear_color(*color));
+    };
+    for (const BodyRange& body : state.bodies) paint(body.first_id, body.count, body.color);
+    const auto& world = engine.world();
+    for (const Arrival& a : world.arrivals) paint(a.first_id, a.count, world.emitters.at(a.emitter).color);
   });
   return made;
 }

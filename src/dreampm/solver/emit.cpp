@@ -238,6 +238,8 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
     const PassStats stats = solver.insert(world, emitter.set, seeds);
     world.next_id = narrow<std::uint32_t>(world.next_id + seeds.size(), "particles");
     emitter.born += seeds.size();
+    world.arrivals.push_back({seeds.front().id, static_cast<std::uint32_t>(seeds.size()),
+                              static_cast<std::uint32_t>(&emitter - world.emitters.data()), now});
     world.wave_speed = std::max(world.wave_speed, stats.wave_speed);
     world.viscosity = std::max(world.viscosity, stats.viscosity);
     for (const ParticleSeed& s : seeds) {

@@ -36,6 +36,7 @@ struct Emitter {
   std::uint64_t born = 0;                    ///< particles that it gave so far
   bool dry = false;                          ///< true if its pool was ever used up
   std::shared_ptr<const MotionPath> path{};  ///< motion of the shape; null: it stays at the scene's place
+  std::optional<Vec3d> color{};              ///< sRGB, of what it gives; decides nothing
 
   bool gives_within(double from, double to) const { return start <= to && stop >= from; }
   double speed_at(double time) const { return value_at(std::span<const Key<double>>(speed), time); }
@@ -60,6 +61,13 @@ struct Emitter {
   double moved(double time) const {
     return time > start ? mean_over(std::span<const Key<double>>(speed), start, time) * (time - start) : 0;
   }
+};
+
+/// A batch of matter that an emitter gave: particles of the ids first_id to first_id + count - 1.
+struct Arrival {
+  std::uint32_t first_id = 0, count = 0;
+  std::uint32_t emitter = 0;  ///< its number in World::emitters
+  double time = 0;            ///< s, when they came in
 };
 
 /// A sink. It takes out matter inside it when particles are sorted: every few steps.

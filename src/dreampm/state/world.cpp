@@ -77,8 +77,10 @@ void add(Hash64& h, const RigidBody& body) {
 }
 
 void add(Hash64& h, const Emitter& emitter) {
-  const auto& [name, shape, set, along, speed, swirl, jitter, start, stop, pool, recycle, born, dry, path] = emitter;
-  static_cast<void>(shape), static_cast<void>(path);  // the scene's own hash has it
+  const auto& [name, shape, set, along, speed, swirl, jitter, start, stop, pool, recycle, born, dry, path, color] =
+      emitter;
+  // The scene's own hash has the shape and the path; the color decides nothing.
+  static_cast<void>(shape), static_cast<void>(path), static_cast<void>(color);
   h.add(std::string_view(name)), h.add(set), add(h, along), h.add(swirl), h.add(jitter), h.add(start), h.add(stop);
   for (const Key<double>& k : speed) h.add(k.t), h.add(k.value);
   h.add(pool), h.add(recycle), h.add(born), h.add(dry);

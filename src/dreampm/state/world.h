@@ -107,6 +107,7 @@ struct World {
   std::vector<Emitter> emitters;
   std::vector<Sink> sinks;
   double emitted_until = -1;       ///< s; time up to which emitters have given matter
+  std::vector<Arrival> arrivals;   ///< what emitters gave, by rising ids; reported, not state
   std::uint32_t next_id = 0;       ///< id of the next particle from an emitter; 0 without emitters
   double drift = 0;                ///< bound on the cells that a particle moved since the last sort
   double wave_speed = 0;           ///< m/s, largest of the last pass

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "dreampm/base/parallel.h"
-#include "dreampm/math/mat3.h"
+#include "dreampm/surface/linear_fit.h"
 
 namespace dreampm::surface {
 namespace {
@@ -58,36 +58,17 @@ TriMesh finish(const QuadMesh& quads) {
 void carry_velocities(TriMesh& mesh, std::span<const Vec3f> positions, std::span<const Vec3f> velocities,
                       const CellGrid& grid) {
   mesh.velocities.assign(mesh.vertices.size(), Vec3f{});
-  const float radius = 1.5f * grid.size, per_radius2 = 1 / (radius * radius);
+  const float radius = 1.5f * grid.size;
   parallel_for(mesh.vertices.size(), 512, [&](std::size_t v) {
-    const Vec3f x = mesh.vertices[v];
-    float sum = 0;
-    Vec3f mean_x{}, mean_v{};
-    Mat3f xx, vx;
-    const Vec3f reach{radius, radius, radius};
+    const Vec3f x = mesh.vertices[v], reach{radius, radius, radius};
+    LinearFit fit(radius);
     for_cells(grid, x - reach, x + reach, [&](std::size_t cell) {
       for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i) {
         const std::size_t p = grid.order[i];
-        if (p >= velocities.size()) continue;  // a mirror image
-        const Vec3f d = positions[p] - x;
-        const float t = 1 - length2(d) * per_radius2;
-        if (t <= 0) continue;
-        const float w = t * t * t;
-        sum += w;
-        mean_x += w * d, mean_v += w * velocities[p];
-        xx = xx + outer(d, d) * w, vx = vx + outer(velocities[p], d) * w;
+        if (p < velocities.size()) fit.add(positions[p] - x, velocities[p]);  // else a mirror image
       }
     });
-    if (sum <= 0) return;
-    mean_x = mean_x / sum, mean_v = mean_v / sum;
-    // Slope = cov(v, x) cov(x, x)^-1; the small diagonal keeps it finite and fades it out where
-    // points are few.
-    const Mat3f cov = xx * (1 / sum) - outer(mean_x, mean_x), cross_cov = vx * (1 / sum) - outer(mean_v, mean_x);
-    const float few = 0.001f * radius * radius;
-    const Mat3f solid = cov + Mat3f::diagonal(few, few, few);
-    const float det = determinant(solid);
-    const Vec3f step = transpose(cofactor(solid)) * mean_x / det;
-    mesh.velocities[v] = mean_v - cross_cov * step;
+    if (!fit.empty()) mesh.velocities[v] = fit.velocity();
   });
 }
 

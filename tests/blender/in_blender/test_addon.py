@@ -2,12 +2,16 @@
 import importlib
 import math
 import subprocess
+import sys
 import time
 
 import bpy
 import numpy
 import pytest
-from conftest import COMMAND, MODULE
+from conftest import COMMAND, MODULE, SOURCE
+
+sys.path.insert(0, str(SOURCE / "blender"))
+from core import ply  # noqa: E402
 
 baking = importlib.import_module(f"{MODULE}.baking")
 panels = importlib.import_module(f"{MODULE}.panels")
@@ -353,6 +357,72 @@ def test_a_run_of_the_command_opens(studio, tmp_path):
     assert bpy.data.objects["DreaMPM water"].data.polygons
     with pytest.raises(RuntimeError, match="no folder of a run"):
         bpy.ops.dreampm.load(directory=str(tmp_path))
+
+
+PAINTS = """dreampm: 1
+name: paints
+space: {max: [0.8, 0.5, 0.2], spacing: 0.02, walls: {ceiling: {type: open}}}
+time: {fps: 24, frames: 14}
+materials: {paint: {type: newtonian, preset: water}}
+bodies:
+  blue: {material: paint, color: [0, 0.13, 0.52], shape: {box: {min: [0, 0, 0], max: [0.2, 0.4, 0.2]}}}
+  yellow: {material: paint, color: [0.99, 0.83, 0], shape: {box: {min: [0.6, 0, 0], max: [0.8, 0.4, 0.2]}}}
+surface: {attributes: [velocity, color, source, age, vorticity]}
+foam: {amount: 0.05, radius: 0.002}
+render: {looks: {paint: {type: opaque}}}
+"""
+
+
+def column(data, name, member, width):
+    values = numpy.empty(width * len(data.attributes[name].data), "f4")
+    data.attributes[name].data.foreach_get(member, values)
+    return values.reshape(-1, width)
+
+
+@pytest.fixture(scope="module")
+def paints(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("paints")
+    (folder / "scene.yaml").write_text(PAINTS)
+    for call in (["run", "scene.yaml", "--out", "run"], ["foam", "run"], ["surface", "run"]):
+        subprocess.run([COMMAND, *call], cwd=folder, check=True, capture_output=True)
+    return folder / "run"
+
+
+def test_foam_of_a_run_is_points_of_their_own_radii(studio, paints):
+    bpy.ops.dreampm.load(directory=str(paints))
+    scene = bpy.context.scene
+    scene.frame_set(scene.frame_start + 13)
+    foam = bpy.data.objects["DreaMPM foam"]
+    file = ply.read(paints / "foam/foam_000014.ply")
+    assert len(file) > 100
+    assert len(foam.data.vertices) == len(file)
+    numpy.testing.assert_allclose(column(foam.data, "radius", "value", 1)[:, 0], file.columns["radius"], rtol=1e-6)
+    assert foam.data.attributes["type"].data_type == "INT" and "age" in foam.data.attributes
+    geometry = foam.evaluated_get(bpy.context.evaluated_depsgraph_get()).evaluated_geometry()
+    cloud = geometry.pointcloud
+    assert len(cloud.points) == len(file)
+    numpy.testing.assert_allclose(column(cloud, "radius", "value", 1)[:, 0], file.columns["radius"], rtol=1e-6)
+    assert cloud.materials[0].name == "DreaMPM foam"
+    scene.frame_set(scene.frame_start)
+    assert len(foam.data.vertices) == 0  # nothing has moved yet
+    # Opened again it is the same object.
+    bpy.ops.dreampm.load(directory=str(paints))
+    assert [o.name for o in bpy.data.objects if o.dreampm_result.foam] == ["DreaMPM foam"]
+
+
+def test_vertices_hold_what_the_surface_does(studio, paints):
+    bpy.ops.dreampm.load(directory=str(paints))
+    scene = bpy.context.scene
+    scene.frame_set(scene.frame_start + 13)
+    data = bpy.data.objects["DreaMPM paint"].data
+    file = ply.read(paints / "surface/surface_000014.ply")
+    assert data.attributes["source"].data_type == "INT"
+    assert set(column(data, "source", "value", 1)[:, 0]) == {0, 1}
+    numpy.testing.assert_allclose(column(data, "age", "value", 1), 13 / 24, rtol=1e-5)
+    colors = column(data, "color", "color_srgb", 4)
+    numpy.testing.assert_allclose(colors[:, :3] * 255, file.vectors(("red", "green", "blue")), atol=0.51)
+    vorticity = column(data, "vorticity", "vector", 3)
+    numpy.testing.assert_allclose(vorticity[:, 2], file.columns["vorticity_y"], rtol=1e-6)
 
 
 class Sheet:

@@ -58,9 +58,9 @@ def test_by_hand_it_is_what_the_extension_shows(run):
         bpy.app.handlers.frame_change_post.remove(names["show"])
 
 
-@pytest.mark.parametrize("kind", ["obj", "vdb"])
-def test_other_files(run, kind):
-    subprocess.run([COMMAND, "run", "scene.yaml", "--out", ".", "--set", f"surface.format={kind}", "--resume"],
+@pytest.mark.parametrize("kind,setting", [("obj", "format=obj"), ("vdb", "type=fog")])
+def test_other_files(run, kind, setting):
+    subprocess.run([COMMAND, "run", "scene.yaml", "--out", ".", "--set", f"surface.{setting}", "--resume"],
                    check=True, capture_output=True)
     subprocess.run([COMMAND, "surface", "."], check=True, capture_output=True)
     shown = bpy.data.objects["DreaMPM water"]

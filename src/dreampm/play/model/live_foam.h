@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "dreampm/foam/foam.h"
-#include "dreampm/play/model/frame.h"
 #include "dreampm/pipeline/foam_limits.h"
+#include "dreampm/play/model/frame.h"
 #include "dreampm/simulation.h"
 
 namespace dreampm::play {
