@@ -46,10 +46,16 @@ TEST(Furnace, AWhiteCloudIsInvisible) {
       }
 }
 
+TEST(Furnace, ADenseWhiteCloudIsInvisible) {
+  // Paths leap where surfaces are far.
+  const TriMesh ball = ball_mesh({}, 1, 24);
+  const auto scene = before_uniform_sky({&ball, cloud(1.3, 400)}, 20);
+  EXPECT_NEAR(mean_of(render(scene, small_picture(12, 12, 8))).y, 1, 0.005f);
+}
+
 TEST(Furnace, CloudsOfColorLoseLightByChannel) {
   const TriMesh ball = ball_mesh({}, 1, 24);
-  const auto scene =
-      before_uniform_sky({&ball, model::Look::dielectric(1.333, {0.5, 0, 2}, {1, 4, 8})}, 12);
+  const auto scene = before_uniform_sky({&ball, model::Look::dielectric(1.333, {0.5, 0, 2}, {1, 4, 8})}, 12);
   // Channels share paths, so that one's weights scatter by about 1: an error of 0.005 of 37,000
   // paths.
   const Vec3f mean = mean_of(render(scene, small_picture(24, 24, 64)));
@@ -91,7 +97,7 @@ RenderScene deep_layer(const TriMesh& layer, const model::Look& look) {
 
 TEST(Cloud, ADeepLayerReflectsAsChandrasekharSays) {
   const TriMesh layer = box_mesh({-40, -40, -40}, {40, 0, 40});
-  for (const double albedo : {0.5, 0.9}) {
+  for (const double albedo : {0.5, 0.9, 0.999}) {
     const HFunction h(albedo);
     RenderScene scene = deep_layer(layer, cloud(1, 2 * albedo, 2 * (1 - albedo)));
     // Under an even sky: 1 - H(mu) sqrt(1 - albedo).
@@ -115,7 +121,8 @@ void write_disc(const std::string& file, const Vec3f& towards, float cos_radius)
   for (const char* name : {"R", "G", "B"}) picture.channels.push_back({name, false, {}});
   for (int y = 0; y < 360; ++y)
     for (int x = 0; x < 720; ++x) {
-      const float theta = pi * (static_cast<float>(y) + 0.5f) / 360, phi = 2 * pi * ((static_cast<float>(x) + 0.5f) / 720 - 0.5f);
+      const float theta = pi * (static_cast<float>(y) + 0.5f) / 360,
+                  phi = 2 * pi * ((static_cast<float>(x) + 0.5f) / 720 - 0.5f);
       const Vec3f d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
       for (ExrChannel& c : picture.channels) c.values.push_back(dot(d, towards) > cos_radius ? 1.0f : 0.0f);
     }

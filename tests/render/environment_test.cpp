@@ -34,7 +34,9 @@ Environment picture_of(int height, Of&& of, float turn = 0) {
 }
 
 Vec3f ramp(const Vec3f& d) { return Vec3f{1, 1, 1} * (1 + 0.6f * d.y + 0.3f * d.x); }
-Vec3f spot(const Vec3f& d) { return dot(d, normalized(Vec3f{0.3f, 0.8f, -0.5f})) > 0.99f ? Vec3f{80, 60, 40} : Vec3f{0.1f, 0.1f, 0.2f}; }
+Vec3f spot(const Vec3f& d) {
+  return dot(d, normalized(Vec3f{0.3f, 0.8f, -0.5f})) > 0.99f ? Vec3f{80, 60, 40} : Vec3f{0.1f, 0.1f, 0.2f};
+}
 
 TEST(Environment, ItsIrradianceIsItsIntegral) {
   // Of 1 + a.d on a plane along n: pi (1 + 2/3 a.n).
@@ -117,9 +119,11 @@ TEST(Environment, ASmallBrightLightLightsAPlateAsItsIrradianceSays) {
     constexpr int n = 1000;
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n; ++j) {
-        const float y = (static_cast<float>(i) + 0.5f) / n, r = std::sqrt(1 - y * y), phi = 2 * pi * (static_cast<float>(j) + 0.5f) / n;
+        const float y = (static_cast<float>(i) + 0.5f) / n, r = std::sqrt(1 - y * y),
+                    phi = 2 * pi * (static_cast<float>(j) + 0.5f) / n;
         const Vec3f d{r * std::cos(phi), y, r * std::sin(phi)};
-        sum += static_cast<double>(e.radiance(d).y * bsdf->eval(view, {d.x, d.z, d.y}, {0.5f, 0.5f, 0.5f}).y) * 2 * std::numbers::pi / n / n;
+        sum += static_cast<double>(e.radiance(d).y * bsdf->eval(view, {d.x, d.z, d.y}, {0.5f, 0.5f, 0.5f}).y) * 2 *
+               std::numbers::pi / n / n;
       }
     EXPECT_NEAR(mean.y, sum, 0.03 * sum);
   }

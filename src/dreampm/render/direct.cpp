@@ -35,8 +35,8 @@ Vec3f Integrator::lit_by_sky(const Path& r, const Shading& at, Sampler& random) 
   if (!(drawn.density > 0) || light.z <= 0 || dot(at.face, drawn.direction) <= 0) return {};
   Vec3f scattered;
   for (int lobe = 0; lobe < at.bsdf.lobes(); ++lobe)
-    scattered += at.bsdf.eval(lobe, at.view, light, at.color) *
-                 (1 / (drawn.density + at.bsdf.pdf(lobe, at.view, light)));
+    scattered +=
+        at.bsdf.eval(lobe, at.view, light, at.color) * (1 / (drawn.density + at.bsdf.pdf(lobe, at.view, light)));
   if (!(largest(scattered) > 0)) return {};
   return drawn.radiance * scattered *
          transmitted(at.p + at.face * geometry_.epsilon(), drawn.direction, drawn.direction, r.media, 1e9f, false);
@@ -56,8 +56,8 @@ Vec3f Integrator::lit_by_photons(const Path& r, const Shading& at) const {
 
 // Along the straight line to the sun; in a medium along the line that a level surface would bend,
 // which is right on the average but draws no caustics: with photons, these light what is there.
-LightSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media,
-                                 Sampler& random, float away) const {
+LightSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media, Sampler& random,
+                                 float away) const {
   if (!sky_.has_sun()) return {};
   const float a = random.next(), b = random.next();
   const Vec3f to_sun = sky_.sample_sun(a, b);
@@ -71,9 +71,9 @@ LightSample Integrator::sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& fa
     gain = to_sun.y / (y * eta * eta);
   }
   if (dot(n, s.direction) > 0 && dot(face, s.direction) > 0)
-    s.irradiance = transmitted(p + face * (away + geometry_.epsilon()), s.direction, to_sun, media, s.distance,
-                               through_clear) *
-                   sky_.sun_irradiance() * gain;
+    s.irradiance =
+        transmitted(p + face * (away + geometry_.epsilon()), s.direction, to_sun, media, s.distance, through_clear) *
+        sky_.sun_irradiance() * gain;
   return s;
 }
 
@@ -104,8 +104,6 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
                            std::min(before, after) / std::max(before, after), cos_out);
     } else if (hit.kind == Kind::pane) {
       share = share * pane_tint * (1 - pane_reflectance(std::fabs(dot(hit.normal, d))));
-    } else if (!through_clear) {
-      return {};
     } else if (!hit.back) {
       share = share * bar_shade;
     }

@@ -7,44 +7,10 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
-#include "dreampm/render/embree.h"
+#include "dreampm/render/intersect_impl.h"
 #include "dreampm/render/wetting.h"
 
 namespace dreampm::trace {
-
-struct Geometry::Embree {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  ~Embree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-  void check(const char* doing) const {
-    const RTCError e = rtcGetDeviceError(device);
-    if (e == RTC_ERROR_OUT_OF_MEMORY) fail_run("Embree ran out of memory while {}", doing);
-    if (e != RTC_ERROR_NONE) fail_run("Embree failed with error {} while {}", static_cast<int>(e), doing);
-  }
-};
-
-struct Geometry::Shape {
-  Kind kind = Kind::none;
-  int object = air;
-  bool spheres = false;
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<Vec3f> normals;       ///< per vertex; empty: flat faces
-  std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
-  std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
-  std::vector<float> opacity{};     ///< per grain; of others empty
-  std::vector<Vec3f> centers{};     ///< m, per grain, with their radii
-  std::vector<float> radii{};
-
-  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
-    if (colors.empty()) return of_look;
-    if (spheres) return colors[primitive];
-    const auto& [a, b, c] = triangles[primitive];
-    return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
-  }
-};
 
 Geometry::Geometry(const RenderScene& scene)
     : embree_(std::make_unique<Embree>()),
@@ -144,6 +110,7 @@ void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int 
       rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
   if (points == nullptr || faces == nullptr) embree_->check("reserving a mesh");
   std::ranges::copy(mesh.vertices, points);
+  shape.points = points;
   std::ranges::copy(mesh.triangles, faces);
   rtcCommitGeometry(g);
   rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
@@ -168,6 +135,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
   auto* balls = static_cast<std::array<float, 4>*>(
       rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, n));
   if (balls == nullptr) embree_->check("reserving spheres");
+  shape.balls = balls;
   const Vec3f reach{spheres.radius, spheres.radius, spheres.radius};
   for (std::size_t i = 0; i < n; ++i) {
     const Vec3f& p = spheres.positions[i];

@@ -40,6 +40,8 @@ class Geometry {
   /// `medium`: the object that the ray runs in, or air. d has unit length. Nothing further than
   /// `reach` [m] is met.
   Hit cast(const Vec3f& o, const Vec3f& d, int medium, float reach = 1e9f) const;
+  /// Returns m: nothing that a ray in clear matter may meet lies nearer to p; at most `most`.
+  float clearance(const Vec3f& p, float most) const;
   /// Everything but the floor.
   const Box3f& bounds() const { return bounds_; }
   /// Does the ray from o along d meet bounds()?

@@ -34,7 +34,8 @@ LightSample Lamps::draw(const Vec3f& p, Sampler& random) const {
                 phi = 2 * pi * b;
     const Vec3f d = Frame(normalized(to)).world(s * std::cos(phi), s * std::sin(phi), c);
     const float along = dot(to, d), off2 = std::max(0.0f, length2(to) - along * along);
-    return {d, along - std::sqrt(std::max(0.0f, lamp.radius * lamp.radius - off2)), lamp.radiance * (angle * all / share)};
+    return {d, along - std::sqrt(std::max(0.0f, lamp.radius * lamp.radius - off2)),
+            lamp.radiance * (angle * all / share)};
   }
   return {};
 }

@@ -14,8 +14,8 @@ struct LightSample {
 };
 
 struct Lamp {
-  Vec3f center;   ///< m
-  float radius;   ///< m
+  Vec3f center;  ///< m
+  float radius;  ///< m
   Vec3f radiance;
 };
 

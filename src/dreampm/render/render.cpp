@@ -118,9 +118,8 @@ class Film {
   std::vector<int> wanted_;
 };
 
-}  // namespace
-
-void check_render(const RenderScene& scene, const RenderSettings& s) {
+/// All but the files.
+void check_values(const RenderScene& scene, const RenderSettings& s) {
   in_range("width", s.width, 8, 16384);
   in_range("height", s.height, 8, 16384);
   in_range("min_samples", s.min_samples, 2, 65536);
@@ -163,8 +162,15 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   }
 }
 
+}  // namespace
+
+void check_render(const RenderScene& scene, const RenderSettings& settings) {
+  check_values(scene, settings);
+  if (!scene.light.environment.empty()) trace::read_environment(scene.light);
+}
+
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
-  check_render(scene, settings);
+  check_values(scene, settings);
   const auto report = [&](double done) {
     if (progress) progress(done);
   };

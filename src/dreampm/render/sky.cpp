@@ -74,6 +74,8 @@ Vec3f night(const Vec3f& d) {
   return mix(Vec3f{0.020f, 0.022f, 0.034f}, Vec3f{0.003f, 0.005f, 0.013f}, smoothstep(0, 0.6f, d.y));
 }
 
+}  // namespace
+
 Environment read_environment(const model::Light& light) {
   Image image = read_exr_colors(light.environment);
   if (image.width != 2 * image.height)
@@ -92,8 +94,6 @@ Environment read_environment(const model::Light& light) {
   if (!(sum > 0)) fail_input("{}: black all over; an environment has light", light.environment);
   return {image.width, image.height, std::move(image.linear), static_cast<float>(light.turn) * degree};
 }
-
-}  // namespace
 
 Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {
   const auto strength = static_cast<float>(light.sun.strength);

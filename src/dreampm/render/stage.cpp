@@ -58,7 +58,8 @@ model::Look paper_look() {
 
 bool has_matte(const RenderScene& scene, const Geometry& geometry) {
   for (std::size_t i = 0; i < scene.objects.size(); ++i)
-    if (geometry.interior(static_cast<int>(i)) == nullptr && !std::holds_alternative<RenderGrains>(scene.objects[i].form))
+    if (geometry.interior(static_cast<int>(i)) == nullptr &&
+        !std::holds_alternative<RenderGrains>(scene.objects[i].form))
       return true;
   return false;
 }

@@ -28,7 +28,8 @@ const Schema<Sun>& sun_schema() {
       number("angle", &Sun::angle, between(0.1, 20, "degrees")).says("The radius of its disc; larger: softer shadows."),
       number("strength", &Sun::strength, between(0, 1000))
           .no_default()
-          .says("The irradiance of a plane that faces it, where the sky has about 1; 0: no sun. Absent: 8 under a clear sky."),
+          .says("The irradiance of a plane that faces it, where the sky has about 1; 0: no sun. Absent: 8 under a "
+                "clear sky."),
   };
   return schema;
 }
@@ -39,9 +40,11 @@ const Schema<Light>& light_schema() {
           .no_default()
           .says("A clear sky, soft boxes in a gray room, or darkness; absent: that of `stage.place`."),
       environment(),
-      written_when<Light>(number("turn", &Light::turn, between(-360, 360, "degrees")), has_environment)
+      number("turn", &Light::turn, between(-360, 360, "degrees"))
+          .when(has_environment, "a light with an environment")
           .says("How far the environment is turned, by the right hand about +y."),
-      written_when<Light>(number("strength", &Light::strength, between(1e-6, 1e6)), has_environment)
+      number("strength", &Light::strength, between(1e-6, 1e6))
+          .when(has_environment, "a light with an environment")
           .says("By what the environment's radiance is multiplied."),
       section("sun", &Light::sun, sun_schema()).says("The sun; absent with an environment, in a studio and at night.")};
   return schema;
@@ -51,7 +54,8 @@ const Schema<SceneProps>& stage_schema() {
   static const Schema<SceneProps> schema{
       choice("place", &SceneProps::place, {"terrace", "studio", "night"})
           .says("Tiles under a clear sky, a paper backdrop under soft boxes, or dark tiles between lamps."),
-      choice("floor", &SceneProps::floor, {"tiles", "none"}).says("The floor below the box: that of its place, or none."),
+      choice("floor", &SceneProps::floor, {"tiles", "none"})
+          .says("The floor below the box: that of its place, or none."),
       choice("basin", &SceneProps::basin, {"glass", "none"}).says("Panes of glass where the box has walls.")};
   return schema;
 }
@@ -73,7 +77,7 @@ void finish_light(const YamlNode& render, Render& out) {
   if (!given(light, "sky"))
     out.light.sky = out.stage.place == model::Place::studio  ? SkyKind::studio
                     : out.stage.place == model::Place::night ? SkyKind::night
-                                                      : SkyKind::clear;
+                                                             : SkyKind::clear;
   const bool sunny = out.light.sky == SkyKind::clear && !has_environment(out.light);
   if (!sunny && !given(light, "sun")) out.light.sun.strength = 0;
 }

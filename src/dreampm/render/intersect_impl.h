@@ -1,0 +1,47 @@
+// What Geometry consists of, for the files that look into it.
+#pragma once
+#include <array>
+
+#include "dreampm/base/error.h"
+#include "dreampm/render/embree.h"
+#include "dreampm/render/intersect.h"
+
+namespace dreampm::trace {
+
+struct Geometry::Embree {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  ~Embree() {
+    if (scene != nullptr) rtcReleaseScene(scene);
+    if (device != nullptr) rtcReleaseDevice(device);
+  }
+  void check(const char* doing) const {
+    const RTCError e = rtcGetDeviceError(device);
+    if (e == RTC_ERROR_OUT_OF_MEMORY) fail_run("Embree ran out of memory while {}", doing);
+    if (e != RTC_ERROR_NONE) fail_run("Embree failed with error {} while {}", static_cast<int>(e), doing);
+  }
+};
+
+struct Geometry::Shape {
+  Kind kind = Kind::none;
+  int object = air;
+  bool spheres = false;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  std::vector<Vec3f> normals;       ///< per vertex; empty: flat faces
+  std::vector<std::uint8_t> walls;  ///< per triangle: 0, or 1 + the wall it lies on
+  std::vector<Vec3f> colors;        ///< per sphere or vertex; or empty
+  std::vector<float> opacity{};     ///< per grain; of others empty
+  std::vector<Vec3f> centers{};     ///< m, per grain, with their radii
+  std::vector<float> radii{};
+  const Vec3f* points = nullptr;                ///< m, of the triangles; Embree has them
+  const std::array<float, 4>* balls = nullptr;  ///< m, middles and radii of spheres; Embree has them
+
+  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
+    if (colors.empty()) return of_look;
+    if (spheres) return colors[primitive];
+    const auto& [a, b, c] = triangles[primitive];
+    return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
+  }
+};
+
+}  // namespace dreampm::trace
