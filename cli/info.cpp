@@ -2,7 +2,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/pipeline/fill_report.h"
+#include "dreampm/render/denoise.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -93,6 +95,33 @@ void print_fill_text(const FrameFill& fill) {
   }
 }
 
+/// What this program is, and what it finds on this machine.
+int print_program(bool json) {
+  const MachineRecord machine = this_machine(std::string(cpu_instruction_sets().back()), thread_count());
+  const DenoiserState denoiser = find_denoiser();
+  if (json) {
+    Json j;
+    j["kind"] = "program";
+    j["version"] = version;
+    j["commit"] = commit;
+    j["cpu"] = machine.cpu;
+    j["isa"] = machine.isa;
+    j["threads"] = machine.threads;
+    j["memory_bytes"] = machine_memory_bytes();
+    j["denoiser"] = {{"found", denoiser.found}, {"text", denoiser.text}};
+    fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
+    return 0;
+  }
+  const auto line = [](const std::string& name, const std::string& value) { fmt::print("{:<16} {}\n", name, value); };
+  line("kind", "program");
+  line("version", fmt::format("{} ({})", version, commit));
+  line("cpu", fmt::format("{}, {}", machine.cpu, machine.isa));
+  line("threads", fmt::format("{}", machine.threads));
+  line("memory", bytes_text(machine_memory_bytes()));
+  line("denoiser", denoiser.text);
+  return 0;
+}
+
 }  // namespace
 
 void add_info(CLI::App& app, Action& action) {
@@ -102,14 +131,21 @@ void add_info(CLI::App& app, Action& action) {
     std::optional<int> frame;
   };
   auto a = std::make_shared<Arguments>();
-  CLI::App* verb = add_verb(app, "info", "Say what a scene, mesh, particle file, checkpoint or run's folder holds",
-                            "dreampm info out/dam-break/particles/particles_000001.ply");
-  verb->add_option("PATH", a->path, "a file, a run's folder or asset:NAME")->required();
+  CLI::App* verb =
+      add_verb(app, "info",
+               "Say what a scene, mesh, particle file, checkpoint or run's folder holds; without one, what "
+               "this program finds on the machine",
+               "dreampm info out/dam-break/particles/particles_000001.ply");
+  verb->add_option("PATH", a->path, "a file, a run's folder or asset:NAME");
   verb->add_flag("--json", a->json, "print JSON");
   CLI::Option* fill = verb->add_flag("--fill", a->fill, "of a run: how full its containers are");
   verb->add_option("--frame", a->frame, "with --fill: that frame, not the last")->needs(fill);
   verb->callback([a, &action] {
     action = [a] {
+      if (a->path.empty()) {
+        if (a->fill) fail_input("--fill is of a run's folder; name one");
+        return print_program(a->json);
+      }
       if (a->fill) {
         const FrameFill found = frame_fill(open_run(a->path), a->frame);
         a->json ? print_fill_json(found) : print_fill_text(found);

@@ -26,6 +26,10 @@ struct WordsOf<model::SurfaceFormat> {
   static constexpr std::array<std::string_view, 3> words{"ply", "obj", "vdb"};
 };
 template <>
+struct WordsOf<model::PictureFormat> {
+  static constexpr std::array<std::string_view, 2> words{"png", "exr"};
+};
+template <>
 struct WordsOf<model::LookType> {
   static constexpr auto words = model::look_type_names;
 };

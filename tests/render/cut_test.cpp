@@ -110,7 +110,7 @@ TEST(Cut, ColorsAndNormalsAreCutToo) {
 
 TEST(Cut, PointsGoWithTheirColors) {
   std::vector<Vec3f> points{{0, 0, 0}, {0, 0, 1}, {0, 0, -1}}, colors{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  cut_points(points, colors, {{0, 0, 0.5}, {0, 0, 1}});
+  cut_points(points, {&colors}, {{0, 0, 0.5}, {0, 0, 1}});
   EXPECT_EQ(points, (std::vector<Vec3f>{{0, 0, 0}, {0, 0, -1}}));
   EXPECT_EQ(colors, (std::vector<Vec3f>{{1, 0, 0}, {0, 0, 1}}));
 }

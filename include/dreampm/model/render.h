@@ -91,6 +91,13 @@ struct Camera {
   double fill = 0.84;     ///< share of the frame that the box fills, with fit_basin
   double fov = 34;        ///< degrees, vertical
   Vec3d from{}, to{};     ///< m, without fit_basin
+  /// The share of the time from frame to frame through which each picture is exposed, 0 to 1, half
+  /// of it before the frame and half after; 0: an instant.
+  double shutter = 0;
+  double aperture = 0;                 ///< m, the diameter of the lens; 0: a pinhole, all is sharp
+  std::optional<double> fstop{};       ///< the f-number, in place of the diameter, of film 24 mm high
+  std::optional<double> focus{};       ///< m, from the eye to the plane that is sharp, along the line of sight
+  std::optional<Vec3d> focus_point{};  ///< m: a point of that plane. Both absent: the middle of the box, or `to`
   bool operator==(const Camera&) const = default;
 };
 
@@ -138,6 +145,8 @@ struct Cut {
   bool operator==(const Cut&) const = default;
 };
 
+enum class PictureFormat { png, exr };
+
 /// The settings of pictures.
 struct Render {
   int width = 1920, height = 1080;  ///< pixels, both even
@@ -145,6 +154,8 @@ struct Render {
   double noise = 0.009;             ///< tone-mapped error to stop at
   bool caustics = true;
   bool physical = false;  ///< leaves out what is only look
+  bool denoise = false;   ///< Open Image Denoise takes the noise out
+  PictureFormat format = PictureFormat::png;
   Camera camera;
   Light light;
   SceneProps stage;

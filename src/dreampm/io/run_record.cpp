@@ -116,6 +116,8 @@ Json stage_json(const StageRecord& s) {
     j["volumes"].push_back(std::move(volume));
   }
   for (const FoamRecord& f : s.foam) j["foam"].push_back(foam_json(f));
+  for (const PictureRecord& p : s.pictures)
+    j["pictures"].push_back({{"frame", p.frame}, {"samples", p.samples}, {"error", p.error}, {"at_limit", p.at_limit}});
   if (!s.found.empty()) j["found"] = s.found;
   return j;
 }
@@ -147,6 +149,11 @@ StageRecord stage_record(const JsonNode& n) {
                            v.get<double>("mesh"), v.maybe<double>("taken")});
     });
   if (n.has("foam")) n.at("foam").each([&](const JsonNode& f) { s.foam.push_back(foam_record(f)); });
+  if (n.has("pictures"))
+    n.at("pictures").each([&](const JsonNode& p) {
+      s.pictures.push_back(
+          {p.get<int>("frame"), p.get<double>("samples"), p.get<double>("error"), p.get<double>("at_limit")});
+    });
   if (n.has("found"))
     n.at("found").each_key([&](const std::string& key, const JsonNode& v) { s.found[key] = v.as<double>(); });
   return s;

@@ -52,6 +52,14 @@ struct FoamRecord {
   std::uint64_t emitted() const { return crest + trapped_air + vorticity; }
 };
 
+/// How a picture was sampled.
+struct PictureRecord {
+  int frame = 1;
+  double samples = 0;   ///< a pixel, in the mean
+  double error = 0;     ///< root mean square of the pixels' errors, to be compared with render.noise
+  double at_limit = 0;  ///< the share of pixels that stopped at render.samples with a larger error
+};
+
 /// A stage that has not run has no fields set and is written as {}.
 struct StageRecord {
   std::optional<double> seconds;
@@ -61,6 +69,7 @@ struct StageRecord {
   std::optional<std::string> settings_hash;  ///< of the scene's keys this stage depends on: a rerun compares it
   std::vector<VolumeRecord> volumes;         ///< of the surface stage, by frame
   std::vector<FoamRecord> foam{};            ///< of the foam stage, by frame
+  std::vector<PictureRecord> pictures{};     ///< of the render stage, by frame
   std::map<std::string, double> found{};     ///< of the foam stage: what the scene left to be found, by its key
   std::optional<std::string> status{};       ///< of its last call: complete | interrupted | failed
   std::optional<std::string> cause{};        ///< of its failure, in plain words

@@ -51,6 +51,13 @@ struct MotionPath {
     return all;
   }
 
+  /// The vector of a rotation by at most half a turn.
+  static Vec3d rotation_vector(const Quaternion& q) {
+    const Vec3d axis = Vec3d{q.x, q.y, q.z} * (q.w < 0 ? -1.0 : 1.0);
+    const double sine = length(axis);
+    return sine > 0 ? axis * (2 * std::atan2(sine, std::abs(q.w)) / sine) : Vec3d{};
+  }
+
  private:
   struct Turned {
     Vec3d position;
@@ -60,12 +67,6 @@ struct MotionPath {
 
   static Quaternion rotation_of(const PoseKey& k) {
     return Quaternion::about(normalized(k.rotate_axis) * (k.rotate_angle * degree));
-  }
-  /// The vector of a rotation by at most half a turn.
-  static Vec3d rotation_vector(const Quaternion& q) {
-    const Vec3d axis = Vec3d{q.x, q.y, q.z} * (q.w < 0 ? -1.0 : 1.0);
-    const double sine = length(axis);
-    return sine > 0 ? axis * (2 * std::atan2(sine, std::abs(q.w)) / sine) : Vec3d{};
   }
   /// True if both keys turn about one axis: the angle between them may be several turns; else it is
   /// the shortest.

@@ -57,8 +57,8 @@ SurfaceSettings surface_settings(const model::Scene& scene) {
   return settings;
 }
 
-Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
-                 const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
+Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
+                   const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
   RenderScene out = render_scene(scene, shift);
   out.wetting = static_cast<float>(wetting_spacings * scene.space.spacing);
   out.objects = colliders.objects;
@@ -69,18 +69,20 @@ Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vecto
     const model::Look& look = look_of(scene, m);
     const bool spheres = look.type == model::LookType::spheres,
                colored = look.type != model::LookType::dielectric && many_colored(scene, m);
-    std::vector<Vec3f>&positions = arrays.emplace_back(), &colors = arrays.emplace_back();
+    std::vector<Vec3f>&positions = arrays.emplace_back(), &colors = arrays.emplace_back(),
+    &velocities = arrays.emplace_back();
     if (spheres || colored) {
       const ParticleFrame& frame = content.particles();
-      positions = particles_of(scene, m, frame).position;
+      MaterialParticles particles = particles_of(scene, m, frame);
+      positions = std::move(particles.position), velocities = std::move(particles.velocity);
       if (colored) colors = particle_colors(scene, m, frame, bodies);
     }
     const auto cut = cut_of(scene, scene.materials[static_cast<std::size_t>(m)].name, shift);
     if (spheres) {
-      if (cut) cut_points(positions, colors, *cut);
+      if (cut) cut_points(positions, {&colors, &velocities}, *cut);
       const float radius = static_cast<float>(look.radius * scene.space.spacing);
       if (!positions.empty())
-        out.objects.push_back({RenderSpheres{positions, radius, colors}, material_look(scene, m), {}});
+        out.objects.push_back({RenderSpheres{positions, radius, colors, velocities}, material_look(scene, m), {}});
       continue;
     }
     TriMesh& mesh = meshes.emplace_back(content.mesh(m));
@@ -96,7 +98,7 @@ Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vecto
     grains = foam_grains(scene, shift, content.foam(), settings);
     out.objects.push_back(grains.object());
   }
-  return render(out, settings);
+  return render_picture(out, settings);
 }
 
 }  // namespace dreampm

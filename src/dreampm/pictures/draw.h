@@ -33,8 +33,9 @@ struct FrameContent {
   std::function<FoamParticles()> foam{};            ///< of a scene with foam; or none
 };
 
-/// `shift`: where places of the content count from. `bodies`: as in run.json.
-Image draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
-                 const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings);
+/// `shift`: where places of the content count from. `bodies`: as in run.json. What is cut is drawn
+/// as at an instant, whatever the shutter.
+Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
+                   const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings);
 
 }  // namespace dreampm

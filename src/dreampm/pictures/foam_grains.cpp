@@ -39,6 +39,7 @@ FoamGrains foam_grains(const model::Scene& scene, const Vec3d& shift, const Foam
     if (r <= least_radius * pixel) continue;
     const float wide = std::max(r, pixel);
     out.positions.push_back(foam.position[i]);
+    if (!foam.velocity.empty()) out.velocities.push_back(foam.velocity[i]);
     out.radii.push_back(wide);
     out.opacity.push_back(hides[static_cast<std::size_t>(foam.type[i])] * (r / wide) * (r / wide));
     out.colors.push_back(foam.type[i] == FoamType::dust ? dust : white);

@@ -8,10 +8,10 @@ namespace dreampm {
 
 /// The arrays of a picture's grains, which its object borrows.
 struct FoamGrains {
-  std::vector<Vec3f> positions, colors;
+  std::vector<Vec3f> positions, colors, velocities;
   std::vector<float> radii, opacity;
   RenderObject object() const {
-    return {RenderGrains{positions, radii, opacity, colors}, model::Look::opaque({1, 1, 1}), {}};
+    return {RenderGrains{positions, radii, opacity, colors, velocities}, model::Look::opaque({1, 1, 1}), {}};
   }
 };
 

@@ -149,28 +149,99 @@ std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   return poses;
 }
 
-DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time) const {
+namespace {
+
+/// Where a body is that goes from pose a to pose b, a share s of the way; its middle goes straight.
+Pose between(const Pose& a, const Pose& b, const Vec3d& middle, double s) {
+  const Vec3d turn = MotionPath::rotation_vector(b.rotation * a.rotation.inverse());
+  const Quaternion rotation = Quaternion::about(turn * s) * a.rotation;
+  return {a(middle) * (1 - s) + b(middle) * s - rotation(middle), rotation};
+}
+
+double turn_between(const Pose& a, const Pose& b) {
+  return length(MotionPath::rotation_vector(b.rotation * a.rotation.inverse()));
+}
+
+}  // namespace
+
+ColliderMotion ColliderModels::motion_about(const FrameRecord& frame, const FrameRecord* before,
+                                            const FrameRecord* after, double open) const {
+  ColliderMotion out{open, {}};
+  if (!(open > 0)) return out;
+  const std::vector<Pose> now = poses_in(frame);
+  const auto pose_at = [&](std::size_t c, double t) {
+    const Model& m = models_[c];
+    if (!frame.poses.contains(m.name)) return m.path ? m.path->pose_at(t) : Pose{};
+    const auto has = [&](const FrameRecord* f) { return f != nullptr && f->poses.contains(m.name); };
+    const bool forward = has(after) && (t >= frame.time || !has(before));
+    const FrameRecord* other = forward ? after : before;
+    if (!has(other) || other->time == frame.time) return now[c];
+    const Vec3d middle = static_cast<Vec3d>(m.frame.middle) + shift_;
+    return between(now[c], other->poses.at(m.name), middle, (t - frame.time) / (other->time - frame.time));
+  };
+  constexpr double step_turn = 0.1;  // rad: what turns is drawn along chords
+  double most = 0;
+  for (std::size_t c = 0; c < models_.size(); ++c)
+    most = std::max(most, turn_between(pose_at(c, frame.time - 0.5 * open), pose_at(c, frame.time + 0.5 * open)));
+  // An even number of steps has one in the middle, where a deforming mesh comes to its next file.
+  const int steps = 2 * std::clamp(static_cast<int>(std::ceil(0.5 * most / step_turn)), 1, 16);
+  for (int k = 0; k <= steps; ++k) {
+    std::vector<Pose>& poses = out.poses.emplace_back();
+    const double t = frame.time + open * (static_cast<double>(k) / steps - 0.5);
+    for (std::size_t c = 0; c < models_.size(); ++c) poses.push_back(2 * k == steps ? now[c] : pose_at(c, t));
+  }
+  return out;
+}
+
+TriMesh ColliderModels::standing(std::size_t c, const Pose& pose, double time) const {
+  TriMesh mesh = this->mesh(c, time);
+  if (!(pose == Pose{})) {
+    for (Vec3f& v : mesh.vertices) v = placed(pose, v);
+    for (Vec3f& n : mesh.normals) n = static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(n)));
+  }
+  if (models_[c].within)
+    for (Vec3f& v : mesh.vertices) v = clamped(v, *models_[c].within);
+  return mesh;
+}
+
+void ColliderModels::add_motion(std::size_t c, double time, const ColliderMotion& motion, TriMesh& mesh,
+                                RenderObject& object, std::list<TriMesh>& steps) const {
+  const std::size_t count = motion.poses.size();
+  if (count < 2) return;
+  const Pose& first = motion.poses.front()[c];
+  const bool still =
+      std::all_of(motion.poses.begin(), motion.poses.end(), [&](const auto& p) { return p[c] == first; });
+  if (still && !deforms(c)) return;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = static_cast<double>(k) / static_cast<double>(count - 1) - 0.5;
+    object.motion.push_back(&steps.emplace_back(standing(c, motion.poses[k][c], time + share * motion.open)));
+  }
+  const std::vector<Vec3f>&from = object.motion.front()->vertices, &to = object.motion.back()->vertices;
+  mesh.velocities.resize(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.velocities.size(); ++v)
+    mesh.velocities[v] = (to[v] - from[v]) / static_cast<float>(motion.open);
+}
+
+DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time, const ColliderMotion& motion) const {
   DrawnColliders out;
   for (std::size_t c = 0; c < models_.size(); ++c) {
-    TriMesh& mesh = out.meshes.emplace_back(this->mesh(c, time));
+    TriMesh& mesh = out.meshes.emplace_back(standing(c, poses[c], time));
     if (mesh.triangles.empty()) continue;
-    TextureFrame frame = models_[c].frame;
+    RenderObject object{&mesh, models_[c].look, {}, models_[c].frame, collider_priority};
     if (const Pose& pose = poses[c]; !(pose == Pose{})) {
-      const auto place = [&](const Vec3f& p) { return placed(pose, p); };
       const auto turn = [&](const Vec3f& d) { return static_cast<Vec3f>(pose.rotation(static_cast<Vec3d>(d))); };
-      for (Vec3f& v : mesh.vertices) v = place(v);
-      for (Vec3f& n : mesh.normals) n = turn(n);
-      frame.middle = place(frame.middle);
+      TextureFrame& frame = object.frame;
+      frame.middle = placed(pose, frame.middle);
       frame.x = turn(frame.x), frame.y = turn(frame.y), frame.z = turn(frame.z);
     }
-    if (models_[c].within)
-      for (Vec3f& v : mesh.vertices) v = clamped(v, *models_[c].within);
     if (models_[c].cut) {
       std::vector<Vec3f> no_colors;
       cut_mesh(mesh, no_colors, *models_[c].cut);
       if (mesh.triangles.empty()) continue;
+    } else {
+      add_motion(c, time, motion, mesh, object, out.steps);
     }
-    out.objects.push_back({&mesh, models_[c].look, {}, frame, collider_priority});
+    out.objects.push_back(std::move(object));
   }
   return out;
 }

@@ -51,7 +51,14 @@ std::optional<CutPlane> cut_of(const model::Scene& scene, const std::string& nam
 /// Colliders of a picture.
 struct DrawnColliders {
   std::list<TriMesh> meshes;
+  std::list<TriMesh> steps{};  ///< of the way of those that move while the picture is exposed
   std::vector<RenderObject> objects;
+};
+
+/// Where colliders are within an exposure.
+struct ColliderMotion {
+  double open = 0;                       ///< s, that it lasts; 0: an instant
+  std::vector<std::vector<Pose>> poses;  ///< at even times from its beginning to its end, a pose each
 };
 
 /// Meshes of a scene's colliders with their looks, made once. `shift`: as render_scene.
@@ -70,8 +77,13 @@ class ColliderModels {
   TriMesh mesh_within(std::size_t collider, const Pose& pose) const;
   /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
-  /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it.
-  DrawnColliders at(std::span<const Pose> poses, double time) const;
+  /// The same through an exposure of `open` seconds about the frame. Between frames rigid bodies
+  /// turn and go on evenly. `before`, `after`: the frames next to it, or null.
+  ColliderMotion motion_about(const FrameRecord& frame, const FrameRecord* before, const FrameRecord* after,
+                              double open) const;
+  /// Them where they stand, a pose each, at a time [s], and cut where the scene asks for it. What
+  /// is cut does not move with `motion`.
+  DrawnColliders at(std::span<const Pose> poses, double time, const ColliderMotion& motion = {}) const;
 
  private:
   struct Model {
@@ -87,6 +99,12 @@ class ColliderModels {
   Vec3f placed(const Pose& pose, const Vec3f& p) const {
     return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);
   }
+
+  /// Its mesh where it stands, uncut.
+  TriMesh standing(std::size_t collider, const Pose& pose, double time) const;
+  /// Gives a mesh its velocities, and its object the steps of its way.
+  void add_motion(std::size_t collider, double time, const ColliderMotion& motion, TriMesh& mesh, RenderObject& object,
+                  std::list<TriMesh>& steps) const;
 
   std::vector<Model> models_;
   Vec3d shift_;

@@ -9,6 +9,7 @@
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
 #include "dreampm/pipeline/frame_stages.h"
+#include "dreampm/pipeline/picture_records.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -51,6 +52,7 @@ void add_stage(RunRecord& record, const std::string& name, const StageRecord& pa
                                           [](const auto& a, const auto& b) { return a.frame < b.frame; }),
                          v);
   }
+  for (const PictureRecord& p : part.pictures) enter_picture(stage.pictures, p);
   if (part.status) record.end_stage(name, part.status, part.cause);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dreampm/export/axes.h"
+#include "dreampm/pipeline/render_stage.h"
 
 namespace dreampm {
 
@@ -29,8 +30,8 @@ struct LoosePictures {
   std::filesystem::path out = "render";
   exchange::Up up = exchange::Up::y;
   std::string look;                     ///< one of picture_looks(); empty: water for closed meshes, else clay
-  double scale = 1;                     ///< of 1280 x 720
-  std::optional<int> samples;           ///< at most, a pixel
+  PictureWishes wishes;                 ///< of 1280 x 720 pixels
+  std::optional<PixelBox> crop;         ///< draw only that part
   double azimuth = 60, elevation = 14;  ///< degrees: where the camera stands
 };
 /// The names of looks.

@@ -14,6 +14,7 @@
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
 #include "dreampm/pipeline/render_stage.h"
+#include "dreampm/render/denoise.h"
 #include "dreampm/render/from_scene.h"
 
 namespace dreampm {
@@ -88,7 +89,7 @@ model::Look look_of(const LoosePictures& request, const Model& model, const View
   return look;
 }
 
-Image draw(const Model& model, const model::Look& look, const View& view, const RenderSettings& settings) {
+Picture draw(const Model& model, const model::Look& look, const View& view, const RenderSettings& settings) {
   RenderScene scene = view.scene;
   const TriMesh mesh = about(model, view.shift);
   std::vector<Vec3f> colors;
@@ -99,7 +100,7 @@ Image draw(const Model& model, const model::Look& look, const View& view, const 
     scene.objects.push_back({&mesh, look, colors});
   else
     scene.objects.push_back({&mesh, look, {}});
-  return render(scene, settings);
+  return render_picture(scene, settings);
 }
 
 }  // namespace
@@ -115,7 +116,9 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".png");
   RenderSettings settings;
   settings.width = 1280, settings.height = 720;
-  settings = scaled(settings, request.scale, request.samples);
+  settings = wished(settings, request.wishes);
+  settings.crop = request.crop;
+  if (settings.denoise) check_denoiser();
   const View view = view_of(request);
   check_render(view.scene, settings);
   Progress progress("render: file", names.size());
@@ -125,7 +128,7 @@ std::vector<fs::path> render_files(const LoosePictures& request) {
     const Model model = load(request.files[i], request.up);
     const model::Look look = look_of(request, model, view);
     make_folder(request.out);
-    write_png(names[i], draw(model, look, view, settings));
+    write_picture(names[i], draw(model, look, view, settings));
   }
   progress.update(names.size());
   return names;

@@ -14,6 +14,7 @@
 #include "dreampm/pipeline/frame_stages.h"
 #include "dreampm/pipeline/models.h"
 #include "dreampm/pipeline/video_stage.h"
+#include "dreampm/render/denoise.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/video/encode.h"
 
@@ -97,6 +98,7 @@ RunFolder simulated(const model::Scene& scene, const SceneSource& source, const 
 bool make_stages(const model::Scene& scene, const SceneSource& source, const MakeOptions& options) {
   check_scene(scene, source);
   check_encoder();
+  if (scene.render.denoise) check_denoiser();
   bool any = false;
   RunFolder run = simulated(scene, source, options, any);
   for (const FrameStage& stage : frame_stages()) any |= stage.make(run, {}).made > 0;

@@ -8,6 +8,7 @@
 namespace dreampm::trace {
 
 float Geometry::clearance(const Vec3f& p, float most) const {
+  if (moves_) return 0;
   struct Search {
     const std::vector<Shape>* shapes;
     Vec3f from;

@@ -179,16 +179,18 @@ class Cutter {
 
 void cut_mesh(TriMesh& mesh, std::vector<Vec3f>& colors, const CutPlane& plane) { Cutter(mesh, colors, plane).cut(); }
 
-void cut_points(std::vector<Vec3f>& points, std::vector<Vec3f>& colors, const CutPlane& plane) {
+void cut_points(std::vector<Vec3f>& points, std::initializer_list<std::vector<Vec3f>*> theirs, const CutPlane& plane) {
   std::size_t n = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (plane.before(points[i])) continue;
     points[n] = points[i];
-    if (!colors.empty()) colors[n] = colors[i];
+    for (std::vector<Vec3f>* values : theirs)
+      if (!values->empty()) (*values)[n] = (*values)[i];
     ++n;
   }
   points.resize(n);
-  if (!colors.empty()) colors.resize(n);
+  for (std::vector<Vec3f>* values : theirs)
+    if (!values->empty()) values->resize(n);
 }
 
 }  // namespace dreampm

@@ -1,5 +1,6 @@
 // Leaves out the part of a thing that is before a plane, to look inside.
 #pragma once
+#include <initializer_list>
 #include <vector>
 
 #include "dreampm/render/render.h"
@@ -16,7 +17,7 @@ struct CutPlane {
 /// empty; cut with it. The mesh's velocities are dropped.
 void cut_mesh(TriMesh& mesh, std::vector<Vec3f>& colors, const CutPlane& plane);
 
-/// Drops the points before the plane, and their colors (one each, or none).
-void cut_points(std::vector<Vec3f>& points, std::vector<Vec3f>& colors, const CutPlane& plane);
+/// Drops the points before the plane, and what they have: colors and velocities, one each or none.
+void cut_points(std::vector<Vec3f>& points, std::initializer_list<std::vector<Vec3f>*> theirs, const CutPlane& plane);
 
 }  // namespace dreampm

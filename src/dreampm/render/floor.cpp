@@ -120,7 +120,8 @@ void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
           Vec3f{x, geometry_.floor_y(), z} + to_sun * ((top_ + 0.05f * scale_ - geometry_.floor_y()) / to_sun.y);
       if (!geometry_.meets_bounds(start, -to_sun)) continue;
       splat(x, z, Vec3f{-each, -each, -each});
-      follow_photon(geometry_, start, -to_sun, bend,
+      const float time = geometry_.moves() ? random.next() : 0.5f;
+      follow_photon(geometry_, start, -to_sun, time, bend,
                     [&](const Hit& hit, const Vec3f& p, const Vec3f&, const Vec3f& w, bool) {
                       if (hit.kind == Kind::floor) splat(p.x, p.z, w * each);
                     });

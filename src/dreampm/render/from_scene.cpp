@@ -10,6 +10,8 @@ RenderScene render_scene(const model::Scene& scene, const Vec3d& shift) {
   for (std::size_t w = 0; w < 6; ++w) out.is_wall[w] = scene.space.walls[w].type != WallType::open;
   out.camera = scene.render.camera;
   out.camera.from -= shift, out.camera.to -= shift;
+  if (out.camera.focus_point) *out.camera.focus_point -= shift;
+  out.frame_time = 1 / scene.time.fps;
   out.light = scene.render.light;
   out.stage = scene.render.stage;
   out.physical = scene.render.physical;
@@ -24,6 +26,8 @@ RenderSettings render_settings(const model::Scene& scene) {
   s.noise = static_cast<float>(scene.render.noise);
   s.caustics = scene.render.caustics;
   s.seed = scene.seed;
+  s.denoise = scene.render.denoise;
+  s.surfaces = scene.render.format == model::PictureFormat::exr;
   return s;
 }
 

@@ -19,10 +19,10 @@ Vec3f leaving(const Vec3f& d, const Vec3f& face) {
 
 }  // namespace
 
-Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const {
+Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time) const {
   Stack stack;
   Path& first = stack.paths[stack.size++];
-  first.o = o, first.d = d;
+  first.o = o, first.d = d, first.media.time = time;
   first.sun_disc = options_.sun_disc;
   first.polished = !options_.looks;
   Vec3f sum;
@@ -123,7 +123,7 @@ bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& ra
   const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
   const Vec3f color =
       geometry_.look(hit.object)
-          .color_at({p, hit.color, geometry_.frame(hit.object), r.distance * options_.pixel_angle / slant});
+          .color_at({p - hit.moved, hit.color, geometry_.frame(hit.object), r.distance * options_.pixel_angle / slant});
   const Shading at{p, n, face, frame, frame.local(-r.d), color, surfaces_.at(hit.object, r.media.top())};
   sum += r.weight * lit(r, at, random);
   return bounce(r, at, random, stack);

@@ -27,8 +27,8 @@ class Integrator {
              const PathOptions& options)
       : geometry_(geometry), surfaces_(geometry), sky_(sky), pattern_(pattern), scale_(scale), options_(options) {}
   /// From o along the unit vector d, starting in air, or in the medium of the first surface that is
-  /// met from inside.
-  Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random) const;
+  /// met from inside. `time`: through the exposure, 0 to 1.
+  Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time = 0.5f) const;
 
  private:
   struct Path;

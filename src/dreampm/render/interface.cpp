@@ -69,7 +69,7 @@ void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media
     media = across(geometry, hit, media);
     before += hit.t;
     o = o + d * hit.t;
-    hit = geometry.cast(o, d, media.top(), reach - before);
+    hit = geometry.cast(o, d, media.top(), media.time, reach - before);
   }
   hit.t += before;
 }

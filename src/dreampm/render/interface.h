@@ -8,9 +8,10 @@
 
 namespace dreampm::trace {
 
-/// The clear objects around a point.
+/// The clear objects around a point, and when.
 class Media {
  public:
+  float time = 0.5f;  ///< through the exposure, 0 to 1
   /// The object that is there, or air.
   int top() const { return size_ == 0 ? air : objects_[static_cast<std::size_t>(size_ - 1)]; }
   /// Once, whether it was there or not. Of more than seven those of the lowest rank are forgotten.
@@ -29,7 +30,7 @@ void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media
 /// higher rank hides. `media` is what the ray is in at o; afterwards what it is in just before the
 /// surface, which the surface's side decides where both disagree.
 inline Hit cast_visible(const Geometry& geometry, const Vec3f& o, const Vec3f& d, Media& media, float reach = 1e9f) {
-  Hit hit = geometry.cast(o, d, media.top(), reach);
+  Hit hit = geometry.cast(o, d, media.top(), media.time, reach);
   if (hit.object != air && hit.kind != Kind::opaque) pass_hidden(geometry, o, d, media, hit, reach);
   return hit;
 }

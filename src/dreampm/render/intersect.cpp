@@ -19,7 +19,8 @@ Geometry::Geometry(const RenderScene& scene)
       is_wall_(scene.is_wall),
       has_floor_(scene.stage.floor == model::Floor::tiles),
       has_glass_(scene.stage.basin == model::Basin::glass),
-      floor_y_(scene.basin.min.y) {
+      floor_y_(scene.basin.min.y),
+      open_(static_cast<float>(scene.camera.shutter * scene.frame_time)) {
   const Vec3f size = basin_.size();
   scale_ = std::max(size.x, size.z);
   epsilon_ = 1e-5f * std::max({1.0f, largest(size), std::fabs(largest(basin_.max)), std::fabs(largest(-basin_.min))});
@@ -35,9 +36,9 @@ Geometry::Geometry(const RenderScene& scene)
     const int index = static_cast<int>(looks_.size()) - 1;
     if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
       if (const std::optional<TriMesh> wet = wetted(scene, o, 2 * epsilon_))
-        add_mesh(*wet, o.colors, index);
+        add_mesh(*wet, o, index);
       else
-        add_mesh(**mesh, o.colors, index);
+        add_mesh(**mesh, o, index);
     }
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
     if (const auto* grains = std::get_if<RenderGrains>(&o.form)) add_grains(*grains, index);
@@ -56,178 +57,6 @@ Geometry::Geometry(const RenderScene& scene)
 
 Geometry::~Geometry() = default;
 
-int Geometry::wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const {
-  const float near = 2 * epsilon_;
-  for (int w = 0; w < 6; ++w) {
-    const int axis = w / 2;
-    const float plane = w % 2 == 0 ? basin_.min[axis] : basin_.max[axis];
-    if (is_wall_[static_cast<std::size_t>(w)] && std::fabs(a[axis] - plane) < near &&
-        std::fabs(b[axis] - plane) < near && std::fabs(c[axis] - plane) < near)
-      return 1 + w;
-  }
-  return 0;
-}
-
-void Geometry::add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int object) {
-  const std::size_t vertices = mesh.vertices.size();
-  if (mesh.triangles.empty()) return;
-  for (std::size_t i = 0; i < vertices; ++i)
-    if (!is_finite(mesh.vertices[i])) fail_input("render: vertex {} of object {} is not finite", i, object);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
-    for (const std::uint32_t v : mesh.triangles[i])
-      if (v >= vertices) fail_input("render: triangle {} of object {} names vertex {} of {}", i, object, v, vertices);
-  if (!colors.empty() && colors.size() != vertices)
-    fail_input("render: {} colors for {} vertices (object {}); give one each, or none", colors.size(), vertices,
-               object);
-  const bool given = mesh.normals.size() == vertices;
-  Shape shape;
-  shape.colors.assign(colors.begin(), colors.end());
-  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
-  shape.object = object;
-  shape.triangles = mesh.triangles;
-  shape.walls.resize(mesh.triangles.size());
-  shape.normals.assign(vertices, Vec3f{});
-  std::vector<std::uint8_t> touches(vertices);
-  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    const auto& [p, q, r] = mesh.triangles[i];
-    const Vec3f &a = mesh.vertices[p], &b = mesh.vertices[q], &c = mesh.vertices[r];
-    shape.walls[i] = static_cast<std::uint8_t>(shape.kind == Kind::dielectric ? wall_of(a, b, c) : 0);
-    for (const std::uint32_t v : {p, q, r}) {
-      if (shape.walls[i] != 0)
-        touches[v] = 1;
-      else  // at a contact line the free surface alone decides
-        shape.normals[v] += cross(b - a, c - a);
-    }
-  }
-  for (std::size_t v = 0; v < vertices; ++v) {
-    bounds_.add(mesh.vertices[v]);
-    shape.normals[v] = normalized(given && touches[v] == 0 ? mesh.normals[v] : shape.normals[v]);
-  }
-  const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* points = static_cast<Vec3f*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
-  auto* faces = static_cast<std::array<std::uint32_t, 3>*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
-  if (points == nullptr || faces == nullptr) embree_->check("reserving a mesh");
-  std::ranges::copy(mesh.vertices, points);
-  shape.points = points;
-  std::ranges::copy(mesh.triangles, faces);
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
-  rtcReleaseGeometry(g);
-  shapes_.push_back(std::move(shape));
-}
-
-void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
-  const std::size_t n = spheres.positions.size();
-  if (!(spheres.radius > 0))
-    fail_input("render: spheres of radius {} m (object {}); give one above 0", spheres.radius, object);
-  if (!spheres.colors.empty() && spheres.colors.size() != n)
-    fail_input("render: {} colors for {} spheres (object {}); give one each, or none", spheres.colors.size(), n,
-               object);
-  if (n == 0) return;
-  Shape shape;
-  shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
-  shape.object = object;
-  shape.spheres = true;
-  shape.colors.assign(spheres.colors.begin(), spheres.colors.end());
-  const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  auto* balls = static_cast<std::array<float, 4>*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, n));
-  if (balls == nullptr) embree_->check("reserving spheres");
-  shape.balls = balls;
-  const Vec3f reach{spheres.radius, spheres.radius, spheres.radius};
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3f& p = spheres.positions[i];
-    if (!is_finite(p)) fail_input("render: sphere {} of object {} is not finite", i, object);
-    balls[i] = {p.x, p.y, p.z, spheres.radius};
-    bounds_.add(p - reach), bounds_.add(p + reach);
-  }
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
-  rtcReleaseGeometry(g);
-  shapes_.push_back(std::move(shape));
-}
-
-// Discs that face every ray: one hit each, so that what a ray passes costs no second one.
-void Geometry::add_grains(const RenderGrains& grains, int object) {
-  const std::size_t n = grains.positions.size();
-  if (grains.radii.size() != n || grains.opacity.size() != n || grains.colors.size() != n)
-    fail_input("render: {} grains (object {}) with {} radii, {} opacities and {} colors; give one each", n, object,
-               grains.radii.size(), grains.opacity.size(), grains.colors.size());
-  if (n == 0) return;
-  Shape shape;
-  shape.kind = Kind::opaque;
-  shape.object = object;
-  shape.spheres = true;
-  shape.colors.assign(grains.colors.begin(), grains.colors.end());
-  shape.opacity.assign(grains.opacity.begin(), grains.opacity.end());
-  shape.centers.assign(grains.positions.begin(), grains.positions.end());
-  shape.radii.assign(grains.radii.begin(), grains.radii.end());
-  const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_DISC_POINT);
-  auto* discs = static_cast<std::array<float, 4>*>(
-      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 16, n));
-  if (discs == nullptr) embree_->check("reserving grains");
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3f& p = grains.positions[i];
-    const float r = grains.radii[i];
-    if (!is_finite(p) || !(r > 0) || !std::isfinite(r))
-      fail_input("render: grain {} of object {} is not finite, or its radius, {} m, is not above 0", i, object, r);
-    discs[i] = {p.x, p.y, p.z, r};
-    bounds_.add(p - Vec3f{r, r, r}), bounds_.add(p + Vec3f{r, r, r});
-  }
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
-  rtcReleaseGeometry(g);
-  shapes_.push_back(std::move(shape));
-}
-
-// The visible edges of the panes: a rim along each wall, a post where two walls meet; just outside
-// the wall planes.
-void Geometry::add_bars() {
-  std::vector<Vec3f> points;
-  std::vector<std::array<std::uint32_t, 3>> faces;
-  const auto box = [&](const Vec3f& a, const Vec3f& b) {
-    const auto first = static_cast<std::uint32_t>(points.size());
-    for (int k = 0; k < 8; ++k)
-      points.push_back({(k & 1) != 0 ? b.x : a.x, (k & 2) != 0 ? b.y : a.y, (k & 4) != 0 ? b.z : a.z});
-    constexpr std::uint32_t sides[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
-                                           {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-    for (const auto& s : sides) {
-      faces.push_back({first + s[0], first + s[1], first + s[2]});
-      faces.push_back({first + s[0], first + s[2], first + s[3]});
-    }
-    bounds_.add(a), bounds_.add(b);
-  };
-  const float thick = 0.008f * scale_, rim = 0.004f * scale_, post = 0.6f * thick;
-  const Vec3f &lo = basin_.min, &hi = basin_.max;
-  const float top = hi.y, under = top - rim;
-  const bool x0 = is_wall_[0], x1 = is_wall_[1], z0 = is_wall_[4], z1 = is_wall_[5];
-  const float z_first = z0 ? lo.z - thick : lo.z, z_last = z1 ? hi.z + thick : hi.z;
-  if (x0) box({lo.x - thick, under, z_first}, {lo.x, top, z_last});
-  if (x1) box({hi.x, under, z_first}, {hi.x + thick, top, z_last});
-  if (z0) box({lo.x, under, lo.z - thick}, {hi.x, top, lo.z});
-  if (z1) box({lo.x, under, hi.z}, {hi.x, top, hi.z + thick});
-  for (const bool right : {false, true})
-    for (const bool front : {false, true}) {
-      if (!(right ? x1 : x0) || !(front ? z1 : z0)) continue;
-      const float x = right ? hi.x : lo.x - post, z = front ? hi.z : lo.z - post;
-      box({x, floor_y_, z}, {x + post, under - 10 * epsilon_, z + post});
-    }
-  if (faces.empty()) return;
-  const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  std::ranges::copy(points, static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                        sizeof(Vec3f), points.size())));
-  std::ranges::copy(faces, static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(
-                               g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, faces.size())));
-  rtcCommitGeometry(g);
-  rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
-  rtcReleaseGeometry(g);
-  Shape shape;
-  shape.kind = Kind::bar;
-  shapes_.push_back(std::move(shape));
-}
-
 bool Geometry::meets_bounds(const Vec3f& o, const Vec3f& d) const {
   float near = 0, far = 1e9f;
   for (int k = 0; k < 3; ++k) {
@@ -240,7 +69,11 @@ bool Geometry::meets_bounds(const Vec3f& o, const Vec3f& d) const {
   return near <= far;
 }
 
-Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float reach) const {
+Vec3f Geometry::velocity(const Hit& hit) const {
+  return hit.shape == no_shape ? Vec3f{} : shapes_[hit.shape].velocity(hit.primitive, hit.u, hit.v);
+}
+
+Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach) const {
   Hit hit;
   hit.t = reach;
   int wall = 0;
@@ -249,7 +82,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float reach) cons
     r.ray.org_x = o.x, r.ray.org_y = o.y, r.ray.org_z = o.z;
     r.ray.dir_x = d.x, r.ray.dir_y = d.y, r.ray.dir_z = d.z;
     r.ray.tnear = epsilon_, r.ray.tfar = reach;
-    r.ray.mask = ~0u;
+    r.ray.mask = ~0u, r.ray.time = time;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     first_hit(embree_->scene, r);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
@@ -258,6 +91,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float reach) cons
       hit.t = r.ray.tfar;
       hit.kind = shape.kind;
       hit.object = shape.object;
+      hit.shape = r.hit.geomID, hit.primitive = r.hit.primID, hit.u = r.hit.u, hit.v = r.hit.v;
       hit.normal = hit.geometric = normalized(Vec3f{r.hit.Ng_x, r.hit.Ng_y, r.hit.Ng_z});
       hit.back = dot(hit.geometric, d) > 0;
       if (shape.kind == Kind::opaque)
@@ -266,14 +100,14 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float reach) cons
       if (!shape.opacity.empty()) {
         hit.grain = shape.radii[primitive], hit.opacity = shape.opacity[primitive],
         hit.center = shape.centers[primitive];
+        if (!shape.velocities.empty()) hit.center += shape.velocities[primitive] * ((time - 0.5f) * open_);
         hit.normal = hit.geometric = -d, hit.back = false;
       }
       if (!shape.normals.empty() && wall == 0) {
-        const auto& [p, q, s] = shape.triangles[primitive];
-        const Vec3f n = normalized(shape.normals[p] * (1 - r.hit.u - r.hit.v) + shape.normals[q] * r.hit.u +
-                                   shape.normals[s] * r.hit.v);
+        const Vec3f n = normalized(shape.normal(primitive, r.hit.u, r.hit.v, time));
         if (dot(n, d) * dot(hit.geometric, d) > 0) hit.normal = n;  // else it would face the other way
       }
+      if (!shape.steps.empty()) hit.moved = shape.moved(primitive, r.hit.u, r.hit.v, time);  // for solid textures
       if (wall == 3 && has_floor_) hit.kind = Kind::floor;  // y_min
       hit.glass = has_glass_ && wall != 0 && wall != 3 && wall != 4;
     }

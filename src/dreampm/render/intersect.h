@@ -10,23 +10,29 @@
 #include "dreampm/render/looks.h"
 #include "dreampm/render/render.h"
 
+struct RTCGeometryTy;
+
 namespace dreampm::trace {
 
 inline constexpr int air = -1;
+inline constexpr unsigned no_shape = ~0u;
 
 enum class Kind : std::uint8_t { none, dielectric, opaque, bar, pane, floor };
 
 struct Hit {
   float t = 1e9f;  ///< m
   Kind kind = Kind::none;
-  bool back = false;        ///< met from inside
-  bool glass = false;       ///< a dielectric's face behind a pane
-  int object = air;         ///< index into the scene's objects
-  Vec3f normal, geometric;  ///< outward, unit length: for shading, of the face itself
-  Vec3f color;              ///< of opaque surfaces, that of their look or their own
-  float grain = 0;          ///< m: the radius of the grain that was met; 0: none
-  float opacity = 1;        ///< of a grain
-  Vec3f center{};           ///< m, of a grain
+  bool back = false;                         ///< met from inside
+  bool glass = false;                        ///< a dielectric's face behind a pane
+  int object = air;                          ///< index into the scene's objects
+  Vec3f normal, geometric;                   ///< outward, unit length: for shading, of the face itself
+  Vec3f color;                               ///< of opaque surfaces, that of their look or their own
+  float grain = 0;                           ///< m: the radius of the grain that was met; 0: none
+  float opacity = 1;                         ///< of a grain
+  Vec3f center{};                            ///< m, of a grain
+  Vec3f moved{};                             ///< m: how far the place has moved since the middle of the exposure
+  unsigned shape = no_shape, primitive = 0;  ///< of Embree; no_shape of panes and of the open floor
+  float u = 0, v = 0;                        ///< on the triangle
 };
 
 class Geometry {
@@ -37,11 +43,16 @@ class Geometry {
   Geometry(const Geometry&) = delete;
   Geometry& operator=(const Geometry&) = delete;
 
-  /// `medium`: the object that the ray runs in, or air. d has unit length. Nothing further than
-  /// `reach` [m] is met.
-  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float reach = 1e9f) const;
-  /// Returns m: nothing that a ray in clear matter may meet lies nearer to p; at most `most`.
+  /// `medium`: the object that the ray runs in, or air. d has unit length. `time`: through the
+  /// exposure, 0 to 1. Nothing further than `reach` [m] is met.
+  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach = 1e9f) const;
+  /// Returns m: nothing that a ray in clear matter may meet lies nearer to p; at most `most`. 0
+  /// where anything moves within the exposure.
   float clearance(const Vec3f& p, float most) const;
+  /// m/s, of what was hit, in the middle of the exposure.
+  Vec3f velocity(const Hit& hit) const;
+  /// True if anything is at different places within the exposure.
+  bool moves() const { return moves_; }
   /// Everything but the floor.
   const Box3f& bounds() const { return bounds_; }
   /// Does the ray from o along d meet bounds()?
@@ -62,10 +73,17 @@ class Geometry {
  private:
   struct Embree;
   struct Shape;
-  void add_mesh(const TriMesh& mesh, std::span<const Vec3f> colors, int object);
+  /// `mesh`: that of `from`, or what stands for it.
+  void add_mesh(const TriMesh& mesh, const RenderObject& from, int object);
+  void set_motion(const TriMesh& mesh, const RenderObject& from, Shape& shape, int object);
+  /// Where a vertex at p goes, by walls.
+  Vec3f carried(const Vec3f& p, const Vec3f& way) const;
   void add_spheres(const RenderSpheres& spheres, int object);
   void add_grains(const RenderGrains& grains, int object);
+  template <class Radius>
+  void add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, const Radius& radius, Shape shape);
   void add_bars();
+  void attach(RTCGeometryTy* g, Shape shape);
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
@@ -80,6 +98,8 @@ class Geometry {
   std::array<bool, 6> is_wall_;
   bool has_floor_, has_glass_;
   float floor_y_, scale_, epsilon_;
+  float open_;  ///< s, how long a picture is exposed
+  bool moves_ = false;
 };
 
 }  // namespace dreampm::trace

@@ -1,4 +1,4 @@
-// What Geometry consists of, for the files that look into it.
+// What Geometry holds, for its own files.
 #pragma once
 #include <array>
 
@@ -35,13 +35,21 @@ struct Geometry::Shape {
   std::vector<float> radii{};
   const Vec3f* points = nullptr;                ///< m, of the triangles; Embree has them
   const std::array<float, 4>* balls = nullptr;  ///< m, middles and radii of spheres; Embree has them
+  std::vector<Vec3f> velocities{};           ///< m/s, per sphere, grain or vertex; empty: at rest
+  std::vector<std::vector<Vec3f>> steps{};   ///< m, per step and vertex; or empty
+  std::vector<std::vector<Vec3f>> turned{};  ///< normals per step and vertex; or empty
 
-  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
-    if (colors.empty()) return of_look;
-    if (spheres) return colors[primitive];
+  Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const;
+  /// Of a triangle's vertices at a place on it.
+  Vec3f mixed(const std::vector<Vec3f>& values, std::size_t primitive, float u, float v) const {
     const auto& [a, b, c] = triangles[primitive];
-    return colors[a] * (1 - u - v) + colors[b] * u + colors[c] * v;
+    return values[a] * (1 - u - v) + values[b] * u + values[c] * v;
   }
+  Vec3f velocity(std::size_t primitive, float u, float v) const;
+  /// The normal at a time, not yet of unit length.
+  Vec3f normal(std::size_t primitive, float u, float v, float time) const;
+  /// How far a place on a triangle has moved since the middle of the exposure.
+  Vec3f moved(std::size_t primitive, float u, float v, float time) const;
 };
 
 }  // namespace dreampm::trace

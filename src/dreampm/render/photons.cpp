@@ -68,7 +68,8 @@ void PhotonMap::follow(const Geometry& geometry, const Beam& beam, bool on_floor
     for (auto k = static_cast<std::uint32_t>(part); k < static_cast<std::uint32_t>(photons); k += parts) {
       Sampler random(stream, k);
       const Beam::Start start = beam.start(random);
-      follow_photon(geometry, start.origin, start.direction, true,
+      const float time = geometry.moves() ? random.next() : 0.5f;
+      follow_photon(geometry, start.origin, start.direction, time, true,
                     [&](const Hit& hit, const Vec3f& p, const Vec3f& d, const Vec3f& weight, bool bent) {
                       if (!bent || (hit.kind == Kind::floor && !on_floor)) return;
                       Vec3f n = hit.geometric;

@@ -16,9 +16,11 @@ inline constexpr float weakest_photon = 0.02f;
 
 /// Follows light from `origin` through clear matter, both ways at each of its faces, to the matte
 /// surfaces and the floor, where it ends: land(hit, point, direction, weight, bent), `bent` where a
-/// straight line would not have led there. `bend` false: straight on, only dimmed.
+/// straight line would not have led there. `time`: through the exposure, 0 to 1. `bend` false:
+/// straight on, only dimmed.
 template <class Land>
-void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& direction, bool bend, Land&& land) {
+void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& direction, float time, bool bend,
+                   Land&& land) {
   struct Photon {
     Vec3f o, d, weight;
     Media media;
@@ -27,7 +29,8 @@ void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& d
   };
   std::array<Photon, 24> stack;
   std::size_t n = 0;
-  stack[n++] = {origin, direction, {1, 1, 1}, {}, 0, false};
+  Photon& first = stack[n++] = {origin, direction, {1, 1, 1}, {}, 0, false};
+  first.media.time = time;
   while (n > 0) {
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {

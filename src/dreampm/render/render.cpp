@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
-#include "dreampm/base/interrupt.h"
-#include "dreampm/base/parallel.h"
 #include "dreampm/render/camera.h"
+#include "dreampm/render/denoise.h"
+#include "dreampm/render/film.h"
 #include "dreampm/render/integrator.h"
 #include "dreampm/render/stage.h"
 #include "dreampm/render/tone.h"
@@ -17,10 +17,6 @@ namespace {
 using namespace trace;
 
 constexpr int photons = 1000000, sky_rays = 24, sky_rays_first = 8;
-constexpr int tile = 16;
-/// Brighter samples are fireflies.
-constexpr float brightest = 10;
-
 /// Some settings are floats: what a float makes of a bound is within it, too.
 void in_range(const char* what, double value, double low, double high) {
   const double least = std::min(low, double(static_cast<float>(low)));
@@ -29,94 +25,28 @@ void in_range(const char* what, double value, double low, double high) {
     fail_input("render: {} is {}; give one from {} to {}", what, value, low, high);
 }
 
-/// Samples of one pixel so far.
-struct Pixel {
-  Vec3f sum;
-  float shown = 0, shown2 = 0;  ///< of the lightness as shown, and its square
-  int count = 0;
-};
+/// What spills into the pixels of `box` lies within that many of them; one more shows how noisy
+/// the last of these are.
+PixelBox with_surroundings(const PixelBox& box, const RenderSettings& s) {
+  const int more = bloom_reach(s.height) + 1;
+  return {std::max(0, box.x0 - more), std::max(0, box.y0 - more), std::min(s.width, box.x1 + more),
+          std::min(s.height, box.y1 + more)};
+}
 
-/// A tent filter a bit narrower than a pixel each way.
-float tent(float u) { return 0.9f * (u < 0.5f ? std::sqrt(2 * u) - 1 : 1 - std::sqrt(2 - 2 * u)); }
+void check_crop(const PixelBox& c, const RenderSettings& s) {
+  if (c.x0 < 0 || c.y0 < 0 || c.x1 > s.width || c.y1 > s.height || c.x0 >= c.x1 || c.y0 >= c.y1)
+    fail_input("render: the crop {},{},{},{} is no part of {} x {} pixels; give x0 < x1 and y0 < y1 within them", c.x0,
+               c.y0, c.x1, c.y1, s.width, s.height);
+}
 
-class Film {
- public:
-  Film(const RenderSettings& settings, bool clamp)
-      : settings_(settings),
-        clamp_(clamp),
-        width_(static_cast<std::size_t>(settings.width)),
-        height_(static_cast<std::size_t>(settings.height)),
-        pixels_(width_ * height_),
-        wanted_(width_ * height_, settings.min_samples) {}
-
-  /// Brings every pixel to its wanted number of samples.
-  void expose(const Integrator& integrator, const trace::Camera& camera, const std::function<void(double)>& progress) {
-    const std::size_t across = (width_ + tile - 1) / tile, down = (height_ + tile - 1) / tile;
-    constexpr std::size_t band = 4;
-    for (std::size_t row = 0; row < down; row += band) {
-      if (interrupted()) throw Interrupted("interrupted while rendering");
-      const std::size_t rows = std::min(band, down - row);
-      parallel_for(across * rows, 1,
-                   [&](std::size_t i) { expose_tile(integrator, camera, i % across, row + i / across); });
-      progress(static_cast<double>(row + rows) / static_cast<double>(down));
-    }
-  }
-
-  /// Asks for more samples where the error as shown, of the pixel or a neighbor, is above the
-  /// noise asked for.
-  void ask_more() {
-    std::vector<float> error(pixels_.size());
-    for (std::size_t i = 0; i < pixels_.size(); ++i) {
-      const Pixel& p = pixels_[i];
-      const float n = static_cast<float>(p.count), mean = p.shown / n;
-      error[i] = std::sqrt(std::max(0.0f, p.shown2 / n - mean * mean) / (n - 1));
-    }
-    for (std::size_t y = 0; y < height_; ++y)
-      for (std::size_t x = 0; x < width_; ++x) {
-        float worst = error[y * width_ + x];
-        for (std::size_t yy = y > 0 ? y - 1 : 0; yy < std::min(y + 2, height_); ++yy)
-          for (std::size_t xx = x > 0 ? x - 1 : 0; xx < std::min(x + 2, width_); ++xx)
-            worst = std::max(worst, 0.7f * error[yy * width_ + xx]);
-        const float k = worst / settings_.noise, n = static_cast<float>(settings_.min_samples) * k * k;
-        wanted_[y * width_ + x] = static_cast<int>(
-            std::clamp(n, static_cast<float>(settings_.min_samples), static_cast<float>(settings_.samples)));
-      }
-  }
-
-  Image image() const {
-    Image out{settings_.width, settings_.height, std::vector<Vec3f>(pixels_.size())};
-    for (std::size_t i = 0; i < pixels_.size(); ++i)
-      out.linear[i] = pixels_[i].sum * (1 / static_cast<float>(pixels_[i].count));
-    return out;
-  }
-
- private:
-  void expose_tile(const Integrator& integrator, const trace::Camera& camera, std::size_t tx, std::size_t ty) {
-    for (std::size_t y = ty * tile; y < std::min(height_, (ty + 1) * tile); ++y)
-      for (std::size_t x = tx * tile; x < std::min(width_, (tx + 1) * tile); ++x) {
-        const std::size_t i = y * width_ + x;
-        Pixel& pixel = pixels_[i];
-        for (; pixel.count < wanted_[i]; ++pixel.count) {
-          Sampler random(stream_of(settings_.seed, 0, static_cast<std::uint32_t>(i)),
-                         static_cast<std::uint32_t>(pixel.count));
-          const float a = random.next(), b = random.next();
-          Vec3f c = integrator.radiance(
-              camera.eye(),
-              camera.direction(static_cast<float>(x) + 0.5f + tent(a), static_cast<float>(y) + 0.5f + tent(b)), random);
-          if (!is_finite(c)) c = {};
-          if (const float m = largest(c); clamp_ && m > brightest) c *= brightest / m;
-          const float shown = shown_lightness(c);
-          pixel.sum += c, pixel.shown += shown, pixel.shown2 += shown * shown;
-        }
-      }
-  }
-
-  RenderSettings settings_;
-  bool clamp_;
-  std::size_t width_, height_;
-  std::vector<Pixel> pixels_;
-  std::vector<int> wanted_;
-};
+void check_lens(const model::Camera& camera) {
+  in_range("camera shutter", camera.shutter, 0, 1);
+  in_range("camera aperture", camera.aperture, 0, 1e3);
+  if (camera.fstop) in_range("camera fstop", *camera.fstop, 0.1, 1e6);
+  if (camera.focus) in_range("camera focus", *camera.focus, 1e-6, 1e9);
+  if (camera.focus_point && !is_finite(*camera.focus_point))
+    fail_input("render: the camera's focus is not finite; give a point");
+}
 
 /// All but the files.
 void check_values(const RenderScene& scene, const RenderSettings& s) {
@@ -134,6 +64,9 @@ void check_values(const RenderScene& scene, const RenderSettings& s) {
              length(scene.camera.to - scene.camera.from) <= 0) {
     fail_input("render: the camera's `from` and `to` are the same point or not finite; give two points");
   }
+  check_lens(scene.camera);
+  in_range("frame time", scene.frame_time, 1e-9, 1e9);
+  if (s.crop) check_crop(*s.crop, s);
   in_range("sun elevation", scene.light.sun.elevation, 2, 90);
   in_range("sun azimuth", scene.light.sun.azimuth, -3600, 3600);
   in_range("sun angle", scene.light.sun.angle, 0.1, 20);
@@ -160,6 +93,7 @@ void check_values(const RenderScene& scene, const RenderSettings& s) {
     in_range("ring", look.ring.value_or(0), 0, 100);
     for (int k = 0; k < 3; ++k) in_range("color", look.color[k], 0, 1);
   }
+  const trace::Camera sees_its_focus(scene.camera, scene.basin, s.width, s.height);
 }
 
 }  // namespace
@@ -169,7 +103,7 @@ void check_render(const RenderScene& scene, const RenderSettings& settings) {
   if (!scene.light.environment.empty()) trace::read_environment(scene.light);
 }
 
-Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
+Picture render_picture(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
   check_values(scene, settings);
   const auto report = [&](double done) {
     if (progress) progress(done);
@@ -202,18 +136,44 @@ Image render(const RenderScene& scene, const RenderSettings& settings, const Ren
     gather.splits = 0;
     gather.pixel_angle = 0.02f;
     const Integrator bounce(geometry, sky, pattern, scale, gather);
-    const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) { return bounce.radiance(p, d, random); };
+    const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) {
+      const float time = geometry.moves() ? random.next() : 0.5f;
+      return bounce.radiance(p, d, random, time);
+    };
     // twice: the second round sees the light that the floor throws back on itself
     light.bake_sky(from, sky_rays_first, settings.seed);
     light.bake_sky(from, sky_rays, settings.seed + 1);
   }
   report(0.2);
   const Integrator integrator(geometry, sky, pattern, scale, options);
-  Film film(settings, !scene.physical);
-  film.expose(integrator, camera, [&](double done) { report(0.2 + 0.4 * done); });
+  const FirstHits firsts(geometry, sky, pattern, camera.pixel_angle());
+  Picture out{settings.width,
+              settings.height,
+              settings.crop.value_or(PixelBox{0, 0, settings.width, settings.height}),
+              {},
+              {},
+              {},
+              {}};
+  out.traced = with_surroundings(out.box, settings);
+  Film::View view{integrator, camera, nullptr, geometry.moves(), scene.frame_time};
+  if (settings.denoise || settings.surfaces) view.firsts = &firsts;
+  Film film(settings, out.traced, view, !scene.physical);
+  film.expose([&](double done) { report(0.2 + 0.4 * done); });
   film.ask_more();
-  film.expose(integrator, camera, [&](double done) { report(0.6 + 0.4 * done); });
-  return film.image();
+  film.expose([&](double done) { report(0.6 + 0.4 * done); });
+  out.linear = film.linear();
+  out.report = film.report(out.box);
+  if (view.firsts != nullptr) out.surfaces = film.surfaces();
+  if (settings.denoise)
+    denoise(out.linear, out.surfaces.albedo, out.surfaces.normal, out.traced.width(), out.traced.height());
+  if (!settings.surfaces) out.surfaces = {};
+  return out;
+}
+
+Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
+  if (settings.crop) fail_input("render: a part was asked for where the whole picture is given");
+  Picture picture = render_picture(scene, settings, progress);
+  return {picture.width, picture.height, std::move(picture.linear)};
 }
 
 }  // namespace dreampm

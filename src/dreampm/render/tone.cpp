@@ -21,9 +21,13 @@ float roll_off(float x) {
 
 float transfer(float x) { return srgb_from_linear(std::clamp(x, 0.0f, 1.0f)); }
 
+/// The width of the halo round bright pixels [pixels].
+float bloom_width(int height) { return std::clamp(static_cast<float>(height) / 90, 0.5f, 12.0f); }
+int reach_of(float sigma) { return static_cast<int>(std::ceil(2.5f * sigma)); }
+
 /// A separable Gaussian, edges repeated.
 void blur(std::vector<Vec3f>& pixels, int width, int height, float sigma) {
-  const int reach = static_cast<int>(std::ceil(2.5f * sigma));
+  const int reach = reach_of(sigma);
   std::vector<float> weight(static_cast<std::size_t>(reach) + 1);
   float sum = 0;
   for (int i = 0; i <= reach; ++i) {
@@ -67,36 +71,50 @@ float shown_lightness(const Vec3f& c) {
   return x / (x + 0.7f);
 }
 
+int bloom_reach(int height) { return reach_of(bloom_width(height)); }
+
+namespace {
+
+/// Shows the pixels of `box`, of which those of `traced` are known in a frame of width x height.
+RgbImage shown(const std::vector<Vec3f>& linear, int width, int height, const PixelBox& traced, const PixelBox& box) {
+  std::vector<Vec3f> halo(linear.size());
+  bool any = false;
+  for (std::size_t i = 0; i < halo.size(); ++i)
+    if (const float m = largest(linear[i]); m > bloom_from) halo[i] = linear[i] * ((m - bloom_from) / m), any = true;
+  if (any) blur(halo, traced.width(), traced.height(), bloom_width(height));
+  RgbImage out(box.width(), box.height());
+  parallel_for(static_cast<std::size_t>(box.height()), 8, [&](std::size_t row) {
+    const int y = box.y0 + static_cast<int>(row);
+    for (int x = box.x0; x < box.x1; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y - traced.y0) * static_cast<std::size_t>(traced.width()) +
+                            static_cast<std::size_t>(x - traced.x0);
+      const float u = 2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - 1;
+      const float v = 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(height) - 1;
+      const Vec3f c =
+          develop((linear[i] + halo[i] * (2 * bloom)) * (exposure * (1 - vignette * (0.6f * u * u + 0.4f * v * v))));
+      // a touch of noise breaks the bands that 8 bits leave in the sky
+      const auto place = static_cast<std::uint32_t>(static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+                                                    static_cast<std::size_t>(x));
+      const float dither = unit_float(hash32(place + 1)) - 0.5f;
+      std::uint8_t* const pixel = out.at(x - box.x0, y - box.y0);
+      for (int k = 0; k < 3; ++k)
+        pixel[k] = static_cast<std::uint8_t>(std::clamp(255 * c[k] + 0.5f + dither, 0.0f, 255.0f));
+    }
+  });
+  return out;
+}
+
+}  // namespace
 }  // namespace dreampm::trace
 
 namespace dreampm {
 
 RgbImage tone_map(const Image& image) {
-  using namespace trace;
-  const std::size_t width = static_cast<std::size_t>(image.width), height = static_cast<std::size_t>(image.height);
-  std::vector<Vec3f> halo(image.linear.size());
-  bool any = false;
-  for (std::size_t i = 0; i < halo.size(); ++i)
-    if (const float m = largest(image.linear[i]); m > bloom_from)
-      halo[i] = image.linear[i] * ((m - bloom_from) / m), any = true;
-  if (any) blur(halo, image.width, image.height, std::clamp(static_cast<float>(image.height) / 90, 0.5f, 12.0f));
-  RgbImage out(image.width, image.height);
-  parallel_for(height, 8, [&](std::size_t y) {
-    for (std::size_t x = 0; x < width; ++x) {
-      const std::size_t i = y * width + x;
-      const float u = 2 * (static_cast<float>(x) + 0.5f) / static_cast<float>(width) - 1;
-      const float v = 2 * (static_cast<float>(y) + 0.5f) / static_cast<float>(height) - 1;
-      const Vec3f c = develop((image.linear[i] + halo[i] * (2 * bloom)) *
-                              (exposure * (1 - vignette * (0.6f * u * u + 0.4f * v * v))));
-      // a touch of noise breaks the bands that 8 bits leave in the sky
-      const float dither = unit_float(hash32(static_cast<std::uint32_t>(i) + 1)) - 0.5f;
-      for (int k = 0; k < 3; ++k)
-        out.pixels[3 * i + static_cast<std::size_t>(k)] =
-            static_cast<std::uint8_t>(std::clamp(255 * c[k] + 0.5f + dither, 0.0f, 255.0f));
-    }
-  });
-  return out;
+  const PixelBox all{0, 0, image.width, image.height};
+  return trace::shown(image.linear, image.width, image.height, all, all);
 }
+
+RgbImage tone_map(const Picture& p) { return trace::shown(p.linear, p.width, p.height, p.traced, p.box); }
 
 void write_png(const std::filesystem::path& path, const Image& image) { write_png(path, tone_map(image)); }
 

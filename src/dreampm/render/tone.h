@@ -10,4 +10,7 @@ Vec3f develop(Vec3f linear);
 /// A cheap stand-in for the curve's lightness, to measure errors by.
 float shown_lightness(const Vec3f& linear);
 
+/// As far as the light of a bright pixel spills, of pictures that are so high [pixels].
+int bloom_reach(int height);
+
 }  // namespace dreampm::trace

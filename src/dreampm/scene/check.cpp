@@ -14,7 +14,7 @@ template <class T>
 void check_unused(Reading& in, const std::string& path, const T& given, const Schema<T>& schema) {
   static const T fresh{};
   for (const Field<T>& f : schema) {
-    if (f.later || f.foreign || !f.applies || f.applies(given)) continue;
+    if (f.foreign || !f.applies || f.applies(given)) continue;
     const auto& write = f.write_always ? f.write_always : f.write;
     YamlNode here = YamlNode::map(), usual = YamlNode::map();
     write(given, f.key, here), write(fresh, f.key, usual);

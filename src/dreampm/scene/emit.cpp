@@ -110,7 +110,8 @@ std::string scene_hash(const model::Scene& scene, Part part, const std::string& 
   s.format = SurfaceFormat::ply;  // it adds files; the mesh is the same
   add_text(later, write_map(s, surface_schema()));
   if (part >= Part::render) {
-    Render r = scene.render;
+    model::Render r = scene.render;
+    r.format = model::PictureFormat::png;  // it adds files; the picture is the same
     if (std::string& environment = r.light.environment; !environment.empty()) {
       add_file(later, environment);
       environment = "its bytes";

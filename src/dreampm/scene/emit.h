@@ -26,7 +26,8 @@ enum class Part {
 };
 
 /// 16 hexadecimal digits, equal for scenes that give the same result. Not covered: name, about,
-/// output.folder, how often checkpoints are written, surface.format (files beside the same mesh),
+/// output.folder, how often checkpoints are written, surface.format and
+/// render.format (files beside the same),
 /// time.frames (more frames continue a run), where meshes lie (their bytes count). `simulation`:
 /// the hash of that part as a run's record has it. The parts from surface on then need no model
 /// file.

@@ -14,7 +14,6 @@
 #include "dreampm/model/scene.h"
 #include "dreampm/scene/value.h"
 #include "dreampm/scene/value_info.h"
-#include "dreampm/version.h"
 
 namespace dreampm::scene {
 
@@ -35,7 +34,6 @@ struct Field {
   std::function<void(Reading&, const YamlNode&, const std::string& path, T&)> read;
   std::function<void(const T&, const std::string& key, YamlNode& map)> write;
   bool required = false;
-  bool later = false;                           ///< known, but of a later version: rejected with "not yet"
   std::function<bool(const T&)> applies = {};   ///< empty: always; asked after the fields before it were read
   std::string only = {};                        ///< when it applies, in words
   std::function<bool(const T&)> optional = {};  ///< one that must be there need not where this holds
@@ -112,7 +110,7 @@ template <class T>
 std::vector<KeyInfo> keys_info(const Schema<T>& schema, const T& fresh = {}) {
   std::vector<KeyInfo> keys;
   for (const Field<T>& f : schema)
-    if (!f.later && !f.foreign) keys.push_back(key_info(f, fresh));
+    if (!f.foreign) keys.push_back(key_info(f, fresh));
   return keys;
 }
 
@@ -120,10 +118,6 @@ std::vector<KeyInfo> keys_info(const Schema<T>& schema, const T& fresh = {}) {
 template <class T>
 ValueInfo map_of(Schema<T> schema, std::string name = {}) {
   return map_of([schema = std::move(schema)] { return MapInfo{keys_info(schema)}; }, std::move(name));
-}
-
-inline void not_yet(Reading& in, const Place& at, std::string_view what) {
-  in.problems.error(at, fmt::format("{} is not yet in DreaMPM {}", what, version));
 }
 
 /// Reports two keys of which only one may be given. Both must be known keys of the map.
@@ -150,7 +144,7 @@ void read_map(Reading& in, const YamlNode& node, const std::string& path, const 
   for (const Field<T>& f : schema) {
     const YamlNode* value = node.find(f.key);
     const bool applies = !f.applies || f.applies(out);
-    if (!f.later && applies) offered.push_back(f.key);
+    if (applies) offered.push_back(f.key);
     if (!value) {
       if (f.required && applies && !(f.optional && f.optional(out)))
         in.problems.error(node.at, fmt::format("missing key '{}'", within(f.key)));
@@ -158,9 +152,7 @@ void read_map(Reading& in, const YamlNode& node, const std::string& path, const 
     }
     const auto entry =
         std::find_if(node.entries.begin(), node.entries.end(), [&](const Entry& e) { return e.key == f.key; });
-    if (f.later)
-      not_yet(in, entry->at, within(f.key));
-    else if (!applies)
+    if (!applies)
       in.problems.error(entry->at, fmt::format("{} is only for {}", within(f.key), f.only));
     else
       f.read(in, *value, within(f.key), out);
@@ -176,7 +168,7 @@ template <class T>
 YamlNode write_map(const T& from, const Schema<T>& schema) {
   YamlNode map = YamlNode::map();
   for (const Field<T>& f : schema)
-    if (!f.later && f.write && (!f.applies || f.applies(from))) f.write(from, f.key, map);
+    if (f.write && (!f.applies || f.applies(from))) f.write(from, f.key, map);
   return map;
 }
 
@@ -263,14 +255,11 @@ Field<T> vector(std::string key, M T::* member, Range range = {}) {
   return plain(std::move(key), member, within(range, read_vector), write_vector, vector_info(range));
 }
 
-/// A word of an enum: the i-th word is the enumerator with value i. `to_come`: words of a later
-/// version.
+/// A word of an enum: the i-th word is the enumerator with value i.
 template <class T, class E>
-Field<T> choice(std::string key, E T::* member, std::vector<std::string> words, std::vector<std::string> to_come = {}) {
+Field<T> choice(std::string key, E T::* member, std::vector<std::string> words) {
   return Field<T>{std::move(key),
                   [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
-                    if (std::find(to_come.begin(), to_come.end(), n.text) != to_come.end())
-                      return not_yet(in, n.at, fmt::format("{}: {}", path, n.text));
                     if (auto w = read_word(in.problems, n, path, words))
                       out.*member = static_cast<E>(std::find(words.begin(), words.end(), *w) - words.begin());
                   },
@@ -301,13 +290,15 @@ Field<T> nested(std::string key, Schema<T> schema) {
       .takes(map_of(schema));
 }
 
-/// A key that a later version will know.
+/// A key of which there is one word so far.
 template <class T>
-Field<T> later(std::string key) {
-  Field<T> f;
-  f.key = std::move(key);
-  f.later = true;
-  return f;
+Field<T> only_word(std::string key, std::string word) {
+  return Field<T>{std::move(key),
+                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
+                    read_word(in.problems, n, path, std::vector<std::string>{word});
+                  },
+                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
+      .takes(word_info({word}));
 }
 
 }  // namespace dreampm::scene

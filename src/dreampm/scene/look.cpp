@@ -6,17 +6,6 @@
 namespace dreampm::scene {
 namespace {
 
-/// A format of which there is one so far.
-template <class T>
-Field<T> only_word(std::string key, std::string word) {
-  return Field<T>{std::move(key),
-                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
-                    read_word(in.problems, n, path, std::vector<std::string>{word});
-                  },
-                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
-      .takes(word_info({word}));
-}
-
 std::vector<std::string> attribute_words() {
   return {model::particle_attributes.begin(), model::particle_attributes.end()};
 }
@@ -70,58 +59,6 @@ Field<Render> size() {
       }}
       .takes(list_info({WholeInfo{16, 16384}}, 2, 2))
       .says("Width and height of the pictures in pixels, both even.");
-}
-
-bool fitted(const Camera& c) { return c.fit_basin; }
-bool aimed(const Camera& c) { return !c.fit_basin; }
-
-Field<Camera> camera_from() {
-  Field<Camera> f = vector("from", &Camera::from, any_number("m")).no_default();
-  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
-    out.fit_basin = false;
-    read(in, n, path, out);
-  };
-  return f;
-}
-
-const Schema<Camera>& camera_schema() {
-  static const Schema<Camera> schema{
-      written_when<Camera>(only_word<Camera>("fit", "basin"), fitted)
-          .says("The camera stands so that the box of the scene fills the picture."),
-      written_when<Camera>(camera_from(), aimed).says("Where the camera stands, in place of `fit`."),
-      written_when<Camera>(vector("to", &Camera::to, any_number("m")).no_default(), aimed)
-          .says("The point that it looks at, with `from`."),
-      written_when<Camera>(number("azimuth", &Camera::azimuth, between(-360, 360, "degrees")), fitted)
-          .says("From which side a fitted camera looks, about the vertical."),
-      written_when<Camera>(number("elevation", &Camera::elevation, between(-89, 89, "degrees")), fitted)
-          .says("How high a fitted camera stands over the horizon."),
-      written_when<Camera>(number("fill", &Camera::fill, between(0.05, 2)), fitted)
-          .says("The part of the picture that the box fills for a fitted camera."),
-      number("fov", &Camera::fov, between(1, 150, "degrees")).says("The vertical angle of view."),
-      later<Camera>("shutter"),
-  };
-  return schema;
-}
-
-Field<Render> camera() {
-  Field<Render> f = section("camera", &Render::camera, camera_schema());
-  f.value = map_of([] {
-    MapInfo info{keys_info(camera_schema())};
-    info.together = {"from", "to"};
-    return info;
-  });
-  f.read = [read = f.read](Reading& in, const YamlNode& n, const std::string& path, Render& out) {
-    const int before = in.problems.errors();
-    read(in, n, path, out);
-    if (in.problems.errors() > before) return;
-    const YamlNode *from = n.find("from"), *to = n.find("to");
-    if (!from != !to)
-      in.problems.error(n.at, fmt::format("{0} has '{1}' without '{2}': give both", path, from ? "from" : "to",
-                                          from ? "to" : "from"));
-    else if (from && out.camera.from == out.camera.to)
-      in.problems.error(to->at, fmt::format("{0}.to is the same point as {0}.from: nothing to look along", path));
-  };
-  return f;
 }
 
 std::function<bool(const Look&)> is(LookType t) {
@@ -286,6 +223,10 @@ const Schema<Render>& render_schema() {
       number("noise", &Render::noise, between(1e-6, 1)).says("The error of a pixel at which its sampling stops."),
       flag("caustics", &Render::caustics).says("Whether sunlight reaches the floor refracted."),
       flag("physical", &Render::physical).says("Leaves out what is only look: the glow of deep water, a dimmed sun."),
+      flag("denoise", &Render::denoise)
+          .says("Takes the noise that is left out, by Open Image Denoise, which is installed apart."),
+      choice("format", &Render::format, {"png", "exr"})
+          .says("The format of the pictures; `exr` is written beside `png`."),
       camera().says("Where the camera stands and looks."),
       light_field(),
       stage_field(),

@@ -78,6 +78,7 @@ const std::vector<Alternative>& alternatives() {
       {"container", {"fit"}, {"scale"}},
       {"box", {"min", "max"}, {"size"}},
       {"camera", {"from", "to"}, {"fit", "azimuth", "elevation", "fill"}},
+      {"camera", {"aperture"}, {"fstop"}},
       {"", {"bulk_modulus"}, {"max_compression"}},
   };
   return table;

@@ -7,6 +7,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/scene/sections.h"
+#include "dreampm/version.h"
 
 namespace dreampm::scene {
 namespace {
@@ -68,6 +69,7 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
   check_cuts(in, root.find("bodies"), scene);
   if (const YamlNode* render = root.find("render")) finish_light(*render, scene.render);
   read_looks(in, root, scene);
+  check_shutter(in, root.find("render"), scene);
   check_foam(in, root.find("foam"), scene);
   if (scene.output.folder.empty())
     scene.output.folder = fmt::format("out/{}{}{}", scene.name, variant.empty() ? "" : "-", variant);

@@ -42,6 +42,7 @@ const Schema<Time>& time_schema();
 const Schema<Output>& output_schema();
 const Schema<Surface>& surface_schema();
 const Schema<Render>& render_schema();
+Field<Render> camera();
 /// Sky, sun and what stands around. A place brings a sky of its own, which the keys of the light
 /// change.
 Field<Render> light_field();
@@ -178,6 +179,9 @@ void read_look(Reading& in, const YamlNode& node, const std::string& path, Look&
 /// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks
 /// the names in its `cut`.
 void read_looks(Reading& in, const YamlNode& root, model::Scene& scene);
+
+/// Checks that what is blurred has velocities.
+void check_shutter(Reading& in, const YamlNode* render, const model::Scene& scene);
 
 /// The whole scene, without dreampm and variants.
 const Schema<model::Scene>& scene_schema();

@@ -1,0 +1,60 @@
+// The film: samples of pixels until their error as shown is small enough.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "dreampm/render/camera.h"
+#include "dreampm/render/first_hit.h"
+#include "dreampm/render/integrator.h"
+
+namespace dreampm::trace {
+
+class Film {
+ public:
+  /// What is exposed; all of it must outlive the film.
+  struct View {
+    const Integrator& integrator;
+    const Camera& camera;
+    const FirstHits* firsts = nullptr;  ///< keeps what the first surfaces are like
+    bool moves = false;                 ///< samples are spread over the exposure
+    double frame_time = 1;              ///< s
+  };
+  /// Of the pixels of `box` of a frame. `clamp`: cuts fireflies.
+  Film(const RenderSettings& settings, const PixelBox& box, const View& view, bool clamp);
+
+  /// Brings every pixel to its wanted number of samples.
+  void expose(const std::function<void(double)>& progress);
+  /// Asks for more samples where the error as shown, of the pixel or a neighbor, is above the
+  /// noise asked for.
+  void ask_more();
+  std::vector<Vec3f> linear() const;
+  FirstSurfaces surfaces() const;
+  /// Of the pixels of a part of the box.
+  RenderReport report(const PixelBox& part) const;
+
+ private:
+  /// Samples of one pixel so far.
+  struct Pixel {
+    Vec3f sum;
+    float shown = 0, shown2 = 0;  ///< of the lightness as shown, and its square
+    int count = 0;
+    /// The standard error of the mean lightness.
+    float error() const;
+  };
+  struct Aside {
+    Vec3f normal, albedo;  ///< sums
+  };
+  void expose_tile(std::size_t tx, std::size_t ty);
+  void expose_pixel(std::size_t i, int x, int y);
+
+  RenderSettings settings_;
+  PixelBox box_;
+  View view_;
+  bool clamp_;
+  std::size_t width_, height_;
+  std::vector<Pixel> pixels_;
+  std::vector<Aside> asides_;
+  std::vector<int> wanted_;
+};
+
+}  // namespace dreampm::trace
