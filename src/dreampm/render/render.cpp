@@ -16,7 +16,7 @@ namespace {
 
 using namespace trace;
 
-constexpr int photons = 1000000, sky_rays = 24, sky_rays_first = 8;
+constexpr int photons = 1000000, photons_of_bodies = 400000, sky_rays = 24, sky_rays_first = 8;
 constexpr int tile = 16;
 /// Brighter samples are fireflies.
 constexpr float brightest = 10;
@@ -194,7 +194,8 @@ Image render(const RenderScene& scene, const RenderSettings& settings, const Ren
   const Box3f clear = clear_bounds(scene, geometry);
   std::optional<PhotonMap> caustics;
   if (settings.caustics && !clear.empty() && (!baked || has_matte(scene, geometry)))
-    options.photons = &caustics.emplace(geometry, sky, lamps, clear, !baked, photons, settings.seed);
+    options.photons =
+        &caustics.emplace(geometry, sky, lamps, clear, !baked, baked ? photons_of_bodies : photons, settings.seed);
   if (baked && scene.stage.floor == model::Floor::tiles) {
     light.bake_sun(settings.caustics, photons, settings.seed);
     PathOptions gather = options;
