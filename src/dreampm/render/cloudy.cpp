@@ -10,7 +10,7 @@ namespace {
 /// Steps of one path.
 constexpr int most_scatterings = 4096;
 
-/// Every so many steps a path asks how far the surfaces are.
+/// The steps after which a path asks how far the surfaces are.
 constexpr int look_around = 8;
 /// Light that starts this many mean free paths within a ball leaves it as diffusion says.
 constexpr float diffuse_depth = 8;

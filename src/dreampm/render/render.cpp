@@ -16,7 +16,8 @@ namespace {
 
 using namespace trace;
 
-constexpr int photons = 1000000, sky_rays = 24, sky_rays_first = 8;
+constexpr int photons = 1000000, photons_of_bodies = 400000, sky_rays = 24, sky_rays_first = 8;
+
 /// Some settings are floats: what a float makes of a bound is within it, too.
 void in_range(const char* what, double value, double low, double high) {
   const double least = std::min(low, double(static_cast<float>(low)));
@@ -128,7 +129,8 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
   const Box3f clear = clear_bounds(scene, geometry);
   std::optional<PhotonMap> caustics;
   if (settings.caustics && !clear.empty() && (!baked || has_matte(scene, geometry)))
-    options.photons = &caustics.emplace(geometry, sky, lamps, clear, !baked, photons, settings.seed);
+    options.photons =
+        &caustics.emplace(geometry, sky, lamps, clear, !baked, baked ? photons_of_bodies : photons, settings.seed);
   if (baked && scene.stage.floor == model::Floor::tiles) {
     light.bake_sun(settings.caustics, photons, settings.seed);
     PathOptions gather = options;
