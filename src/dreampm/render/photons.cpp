@@ -65,9 +65,8 @@ void PhotonMap::follow(const Geometry& geometry, const Beam& beam, bool on_floor
                        std::uint32_t pass) {
   std::array<std::vector<Landed>, parts> landed;
   parallel_for(parts, 1, [&](std::size_t part) {
-    const std::uint32_t stream = stream_of(seed, pass, 0);
     for (auto k = static_cast<std::uint32_t>(part); k < static_cast<std::uint32_t>(photons); k += parts) {
-      Sampler random(stream, k);
+      Sampler random(stream_of(seed, pass, k), 0);
       // on a lattice of rank 1 (golden ratio), which a disc winds up to a spiral
       const Beam::Start start = beam.start((static_cast<float>(k) + 0.5f) / static_cast<float>(photons),
                                            unit_float(k * 2654435769u), random);
