@@ -9,9 +9,9 @@
 
 namespace dreampm::test {
 namespace {
+using nlohmann::json;
 using testing::ContainsRegex;
 using testing::HasSubstr;
-using nlohmann::json;
 namespace fs = std::filesystem;
 
 class RenderVerb : public Typing {
@@ -26,7 +26,7 @@ class RenderVerb : public Typing {
           "velocity: [0, -2, 0]}}\n"
           "colliders: {bar: {shape: {box: {size: [0.3, 0.05, 0.05]}, center: [0.75, 0.2, 0.25]}, "
           "motion: {spin: [0, 0, 8]}}}\n"
-          "render: {size: [96, 64], samples: 8, camera: {shutter: 0.5, fstop: 1.4}}\n");
+          "render: {size: [96, 64], samples: 8, stage: {floor: none}, camera: {shutter: 0.5, fstop: 1.4}}\n");
     const Typed run = type("run fall.yaml");
     ASSERT_EQ(run.code, 0) << run.err;
     ASSERT_EQ(type("surface out/fall").code, 0);
@@ -56,7 +56,8 @@ TEST_F(RenderVerb, WritesExrFilesBesideThePictures) {
 TEST_F(RenderVerb, TheLogAndTheRecordHaveTheErrorThatWasReached) {
   const Typed drawn = render("--frames 1-2");
   ASSERT_EQ(drawn.code, 0);
-  EXPECT_THAT(drawn.err, ContainsRegex("frame 2: [0-9.]+ samples a pixel, error 0\\.[0-9]+; [0-9.e-]+ % of the pixels stopped"));
+  EXPECT_THAT(drawn.err,
+              ContainsRegex("frame 2: [0-9.]+ samples a pixel, error 0\\.[0-9]+; [0-9.e-]+ % of the pixels stopped"));
   const json stage = json::parse(read_file(file("run.json"))).at("stages").at("render");
   ASSERT_EQ(stage.at("pictures").size(), 2u);
   const json& second = stage.at("pictures")[1];
@@ -87,7 +88,8 @@ TEST_F(RenderVerb, APartHasThePixelsOfTheWhole) {
 TEST_F(RenderVerb, ATurntableGoesRound) {
   const Typed round = render("--frame 1 --turntable 4 --scale 0.5 --out round");
   ASSERT_EQ(round.code, 0) << round.err;
-  const RgbImage first = read_png(folder / "round/turntable_000001.png"), back = read_png(folder / "round/turntable_000003.png");
+  const RgbImage first = read_png(folder / "round/turntable_000001.png"),
+                 back = read_png(folder / "round/turntable_000003.png");
   EXPECT_EQ(first.width, 48);
   EXPECT_NE(first.pixels, back.pixels);
   EXPECT_FALSE(fs::exists(folder / "round/turntable_000005.png"));

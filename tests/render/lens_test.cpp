@@ -68,9 +68,9 @@ constexpr int side = 72;
 /// pixels each way, where that of an even disc is a sixteenth of the square.
 constexpr double filter = 16 * 0.9 * 0.9 / 6;
 
-/// A ball 0.04 m in radius before the uniform sky, nearly black.
+/// A black ball of a radius of 0.08 m, several pixels wide, before the uniform sky.
 Image small_ball(double aperture, float z) {
-  TriMesh ball = ball_mesh({0, 0, z}, 0.04f, 32);
+  TriMesh ball = ball_mesh({0, 0, z}, 0.08f, 32);
   RenderScene scene = before_uniform_sky({&ball, model::Look::opaque({0, 0, 0}), {}}, 30);
   scene.camera = before_origin(aperture);
   return render(scene, small_picture(side, side, 256));
@@ -90,11 +90,12 @@ double shadow_width(const Image& image) {
 }
 
 TEST(Lens, WhatIsOutOfFocusSpreadsAsTheThinLensSays) {
-  const double of_ball = 0.08 * side / (2 * 4 * std::tan(std::numbers::pi / 12));
+  const double of_ball = 0.16 * side / (2 * 4 * std::tan(std::numbers::pi / 12));
   // Squares of widths add up where an even disc is spread over another.
   EXPECT_NEAR(shadow_width(small_ball(0.4, 0)) / std::sqrt(of_ball * of_ball + filter), 1, 0.03) << "in focus";
   for (const float z : {1.0f, -2.0f}) {
-    const double depth = 4 - static_cast<double>(z), ball = of_ball * 4 / depth, spread = circle(0.4, 4, depth, 30, side);
+    const double depth = 4 - static_cast<double>(z), ball = of_ball * 4 / depth,
+                 spread = circle(0.4, 4, depth, 30, side);
     EXPECT_NEAR(shadow_width(small_ball(0.4, z)) / std::sqrt(ball * ball + spread * spread + filter), 1, 0.03) << z;
     EXPECT_NEAR(shadow_width(small_ball(0, z)) / std::sqrt(ball * ball + filter), 1, 0.03) << "without a lens, " << z;
   }

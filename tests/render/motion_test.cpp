@@ -54,7 +54,8 @@ const model::Look black = model::Look::opaque({0, 0, 0});
 TEST(Motion, AnEdgeIsSmearedOverItsWayWhileTheShutterIsOpen) {
   // 10 m/s for half of 0.1 s: 0.5 m, 10 pixels, about the place at the frame.
   const TriMesh box = moving_box({10, 0, 0});
-  const auto [still_at, still] = right_ramp(lacks(render(far_box({&box, black, {}}, 0), small_picture(wide, high, 256))));
+  const auto [still_at, still] =
+      right_ramp(lacks(render(far_box({&box, black, {}}, 0), small_picture(wide, high, 256))));
   EXPECT_NEAR(still_at, 10, 0.2);
   EXPECT_LT(still, 2) << "the picture's own filter";
   const auto [at, width] = right_ramp(lacks(render(far_box({&box, black, {}}, 0.5), small_picture(wide, high, 256))));
@@ -130,6 +131,7 @@ TEST(Motion, WaterStaysWithinItsPanes) {
   RenderScene scene;
   scene.basin = {{0, 0, 0}, {1, 1, 1}};
   scene.frame_time = 1;
+  scene.stage.floor = model::Floor::none;
   const auto picture = [&](const Vec3f& velocity, double shutter) {
     water.velocities.assign(water.vertices.size(), velocity);
     scene.objects = {{&water, model::Look::dielectric(), {}}};
@@ -161,7 +163,9 @@ TEST(Motion, TheSameBitsForAnyNumberOfThreads) {
 TEST(Motion, BrokenVelocitiesAreNamed) {
   TriMesh box = moving_box({1, 0, 0});
   box.velocities.pop_back();
-  EXPECT_NE(test::refusal([&] { render(far_box({&box, black, {}}, 0.5), small_picture(8, 8, 2)); }).find("35 velocities for 36"),
+  EXPECT_NE(test::refusal([&] {
+              render(far_box({&box, black, {}}, 0.5), small_picture(8, 8, 2));
+            }).find("35 velocities for 36"),
             std::string::npos);
   box.velocities.push_back({std::nanf(""), 0, 0});
   EXPECT_NE(test::refusal([&] { render(far_box({&box, black, {}}, 0), small_picture(8, 8, 2)); }).find("vertex 35"),

@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// A box of clear matter and a matte ball on tiles under the sun.
+/// A box of clear matter and a matte ball under the sun; without tiles, whose light takes time.
 struct Still {
   TriMesh water = box_mesh({0, 0, 0}, {1, 0.3f, 0.6f}), ball = ball_mesh({0.5f, 0.6f, 0.3f}, 0.15f, 16);
   RenderScene scene;
@@ -26,6 +26,7 @@ struct Still {
     ball.velocities.assign(ball.vertices.size(), {0.3f, -0.9f, 0.2f});
     scene.objects = {{&water, model::Look::dielectric(), {}}, {&ball, model::Look::opaque({0.8, 0.4, 0.2}), {}}};
     scene.frame_time = 0.05;
+    scene.stage.floor = model::Floor::none;
   }
 };
 
@@ -48,13 +49,15 @@ TEST(Crop, ItsPixelsAreThoseOfTheWholePicture) {
         ASSERT_EQ(there.at(0, y)[x], shown.at(box.x0, box.y0 + y)[x]) << x << " " << y;
   }
   settings.crop = PixelBox{0, 0, 97, 64};
-  EXPECT_THAT(test::refusal([&] { render_picture(still.scene, settings); }), HasSubstr("0,0,97,64 is no part of 96 x 64"));
+  EXPECT_THAT(test::refusal([&] { render_picture(still.scene, settings); }),
+              HasSubstr("0,0,97,64 is no part of 96 x 64"));
   settings.crop = PixelBox{5, 5, 5, 9};
   EXPECT_THROW(render_picture(still.scene, settings), InputError);
 }
 
 TEST(FirstSurfaces, DepthNormalAlbedoAndMotionAreThoseOfTheBall) {
   Still still;
+  still.scene.stage = {};
   still.scene.stage.basin = model::Basin::none;
   RenderSettings settings;
   settings.width = 96, settings.height = 64, settings.samples = settings.min_samples = 8, settings.surfaces = true;
@@ -121,7 +124,7 @@ TEST(Report, TheErrorIsThatOfMoreSamples) {
 }
 
 /// Where there is no denoiser its tests say so.
-#define NEED_DENOISER()                       \
+#define NEED_DENOISER() \
   if (!find_denoiser().found) GTEST_SKIP() << find_denoiser().text
 
 TEST(Denoiser, WithoutOneTheErrorSaysWhatToInstall) {

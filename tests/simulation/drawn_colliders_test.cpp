@@ -68,5 +68,51 @@ TEST(DrawnColliders, OnlyWhatIsNamedIsCut) {
   EXPECT_NEAR(cut_of(scene, "water", {0.1, 0, 0})->point.x, 0.5, 1e-12);
 }
 
+FrameRecord crate_at(int frame, double time, const Pose& pose) {
+  FrameRecord f;
+  f.frame = frame, f.time = time;
+  f.poses["crate"] = pose;
+  return f;
+}
+
+TEST(ColliderMotion, ARigidBodyTurnsEvenlyFromFrameToFrame) {
+  const model::Scene scene = with_crate("{}");
+  const ColliderModels models(scene, {});
+  const Vec3d middle{0.5, 0.5, 0.5};
+  // From rest a quarter turn about its middle, which goes 0.2 m along x.
+  const FrameRecord now = crate_at(2, 0.1, Pose{}),
+                    after = crate_at(3, 0.2, {turned().position + Vec3d{0.2, 0, 0}, turned().rotation});
+  const ColliderMotion motion = models.motion_about(now, nullptr, &after, 0.1);
+  ASSERT_GE(motion.poses.size(), 9u) << "a quarter turn is drawn along chords of less than 0.2 rad";
+  ASSERT_EQ(motion.poses.size() % 2, 1u);
+  const Pose end = motion.poses.back()[0], start = motion.poses.front()[0];
+  EXPECT_NEAR(end(middle).x, 0.6, 1e-12) << "half of the time to the next frame";
+  EXPECT_NEAR(start(middle).x, 0.4, 1e-12) << "nothing says where it was before: it came as it goes";
+  EXPECT_NEAR(end(middle).z, 0.5, 1e-12);
+  const Vec3d along = end.rotation({1, 0, 0});
+  EXPECT_NEAR(along.x, std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(along.z, -std::sqrt(0.5), 1e-12) << "an eighth of a turn about y";
+  EXPECT_EQ(motion.poses[motion.poses.size() / 2][0], Pose{});
+}
+
+TEST(ColliderMotion, MovingMeshesHaveStepsAndVelocities) {
+  const model::Scene scene = with_crate("{}");
+  const ColliderModels models(scene, {});
+  const FrameRecord before = crate_at(1, 0, Pose{{-0.1, 0, 0}, {}}), now = crate_at(2, 0.1, Pose{}),
+                    after = crate_at(3, 0.2, Pose{{0.1, 0, 0}, {}});
+  const ColliderMotion motion = models.motion_about(now, &before, &after, 0.05);
+  const std::vector<Pose> poses{Pose{}};
+  const DrawnColliders drawn = models.at(poses, 0.1, motion), still = models.at(poses, 0.1);
+  const TriMesh& mesh = drawn.meshes.front();
+  ASSERT_EQ(mesh.velocities.size(), mesh.vertices.size());
+  for (const Vec3f& v : mesh.velocities) EXPECT_LT(length(v - Vec3f{1, 0, 0}), 1e-4f);
+  ASSERT_EQ(drawn.objects[0].motion.size(), 3u) << "what does not turn goes straight";
+  EXPECT_NEAR(drawn.objects[0].motion.back()->vertices[0].x - mesh.vertices[0].x, 0.025, 1e-5);
+  EXPECT_TRUE(still.objects[0].motion.empty());
+  // What is cut has faces that change as it goes.
+  const model::Scene cut = with_crate("{cut: {point: [0.6, 0, 0], normal: [1, 0, 0], of: [crate]}}");
+  EXPECT_TRUE(ColliderModels(cut, {}).at(poses, 0.1, motion).objects[0].motion.empty());
+}
+
 }  // namespace
 }  // namespace dreampm

@@ -16,9 +16,8 @@ void enter_picture(std::vector<PictureRecord>& list, const PictureRecord& pictur
 }
 
 void keep_pictures(std::vector<PictureRecord>& list, const std::vector<int>& frames) {
-  std::erase_if(list, [&](const PictureRecord& p) {
-    return std::find(frames.begin(), frames.end(), p.frame) == frames.end();
-  });
+  std::erase_if(
+      list, [&](const PictureRecord& p) { return std::find(frames.begin(), frames.end(), p.frame) == frames.end(); });
 }
 
 std::string picture_line(const PictureRecord& p, int most_samples, double noise) {

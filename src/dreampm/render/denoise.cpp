@@ -95,10 +95,10 @@ Device open_device(const Oidn& call) {
 DenoiserState find_denoiser() {
   const Loaded& library = loaded();
   if (!library.why.empty())
-    return {false,
-            fmt::format("Open Image Denoise was not found ({}). Install version 2, as by `pip install pyoidn`, and name "
-                        "its libOpenImageDenoise.so.2 by DREAMPM_OIDN",
-                        library.why)};
+    return {false, fmt::format(
+                       "Open Image Denoise was not found ({}). Install version 2, as by `pip install pyoidn`, and name "
+                       "its libOpenImageDenoise.so.2 by DREAMPM_OIDN",
+                       library.why)};
   const Device device = open_device(library.call);
   const int version = library.call.get_device_int(device.get(), "version");
   return {true, fmt::format("Open Image Denoise {}.{}.{} ({})", version / 10000, version / 100 % 100, version % 100,

@@ -48,6 +48,12 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
       out.albedo = weight * albedo_of(hit, p, d, way);
       return out;
     }
+    if (const Interior* in = geometry_.interior(hit.object); in->scatters && !hit.back) {
+      const Vec3f &s = in->scattering, &all = in->extinction;
+      const auto share = [](float a, float b) { return b > 0 ? a / b : 1; };
+      out.albedo = weight * Vec3f{share(s.x, all.x), share(s.y, all.y), share(s.z, all.z)};
+      return out;
+    }
     // Behind a clear surface lies what the picture mostly shows there.
     const Split s = split_light(geometry_, hit, d, media);
     const bool all_back = s.reflectance >= 0.9999f;

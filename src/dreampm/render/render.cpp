@@ -132,44 +132,18 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
     options.photons =
         &caustics.emplace(geometry, sky, lamps, clear, !baked, baked ? photons_of_bodies : photons, settings.seed);
   if (baked && scene.stage.floor == model::Floor::tiles) {
-    light.bake_sun(settings.caustics, photons, settings.seed);
     PathOptions gather = options;
     gather.looks = gather.sun_disc = false;
     gather.splits = 0;
     gather.pixel_angle = 0.02f;
-    const Integrator bounce(geometry, sky, pattern, scale, gather);
-    const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) {
-      const float time = geometry.moves() ? random.next() : 0.5f;
-      return bounce.radiance(p, d, random, time);
-    };
-    // twice: the second round sees the light that the floor throws back on itself
-    light.bake_sky(from, sky_rays_first, settings.seed);
-    light.bake_sky(from, sky_rays, settings.seed + 1);
+    bake(light, Integrator(geometry, sky, pattern, scale, gather), geometry.moves(), settings);
   }
   report(0.2);
   const Integrator integrator(geometry, sky, pattern, scale, options);
   const FirstHits firsts(geometry, sky, pattern, camera.pixel_angle());
-  Picture out{settings.width,
-              settings.height,
-              settings.crop.value_or(PixelBox{0, 0, settings.width, settings.height}),
-              {},
-              {},
-              {},
-              {}};
-  out.traced = with_surroundings(out.box, settings);
   Film::View view{integrator, camera, nullptr, geometry.moves(), scene.frame_time};
   if (settings.denoise || settings.surfaces) view.firsts = &firsts;
-  Film film(settings, out.traced, view, !scene.physical);
-  film.expose([&](double done) { report(0.2 + 0.4 * done); });
-  film.ask_more();
-  film.expose([&](double done) { report(0.6 + 0.4 * done); });
-  out.linear = film.linear();
-  out.report = film.report(out.box);
-  if (view.firsts != nullptr) out.surfaces = film.surfaces();
-  if (settings.denoise)
-    denoise(out.linear, out.surfaces.albedo, out.surfaces.normal, out.traced.width(), out.traced.height());
-  if (!settings.surfaces) out.surfaces = {};
-  return out;
+  return exposed(settings, view, !scene.physical, report);
 }
 
 Image render(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {

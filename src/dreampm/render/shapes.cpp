@@ -102,9 +102,8 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
   const std::size_t steps = std::max<std::size_t>(1, shape.steps.size());
   rtcSetGeometryTimeStepCount(g, static_cast<unsigned>(steps));
   for (std::size_t k = 0; k < steps; ++k) {
-    auto* points =
-        static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(k),
-                                                    RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
+    auto* points = static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, static_cast<unsigned>(k),
+                                                               RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
     if (points == nullptr) embree_->check("reserving a mesh");
     std::ranges::copy(shape.steps.empty() ? mesh.vertices : shape.steps[k], points);
     shape.points = points;

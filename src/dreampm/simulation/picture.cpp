@@ -21,16 +21,27 @@ RgbImage render(const Simulation& simulation, const PictureOptions& options) {
   std::vector<BodyRecord> bodies;
   for (const BodyRange& b : impl.state.bodies) bodies.push_back({b.name, b.first_id, b.count});
   return impl.with_engine([&](const auto& engine) {
+    // Within the exposure what has no path goes on as it moves now.
     std::vector<Pose> poses;
-    for (const Collider& c : engine.world().colliders) poses.push_back(c.pose);
+    FrameRecord now, after;
+    now.time = engine.world().time, after.time = now.time + 1 / scene.time.fps;
+    for (Collider c : engine.world().colliders) {
+      poses.push_back(c.pose);
+      if (c.path) continue;
+      now.poses[c.name] = c.pose;
+      c.advance(after.time - now.time);
+      after.poses[c.name] = c.pose;
+    }
+    const ColliderModels models(scene, frame.shift);
+    const double open = scene.render.camera.shutter / scene.time.fps;
     FrameContent content;
     content.particles = [&]() -> const ParticleFrame& { return frame; };
     content.mesh = [&](int material) {
       const MaterialParticles particles = particles_of(scene, material, frame);
       return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
     };
-    return tone_map(draw_frame(scene, frame.shift, bodies, content,
-                               ColliderModels(scene, frame.shift).at(poses, engine.world().time), settings));
+    const DrawnColliders colliders = models.at(poses, now.time, models.motion_about(now, nullptr, &after, open));
+    return tone_map(draw_frame(scene, frame.shift, bodies, content, colliders, settings));
   });
 }
 
