@@ -38,12 +38,6 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
       out.velocity = geometry_.velocity(hit);
       out.normal = hit.back ? -hit.normal : hit.normal;
     }
-    // What is cloudy shows itself.
-    const Interior* const in = hit.kind == Kind::dielectric ? geometry_.interior(hit.object) : nullptr;
-    if (in != nullptr && in->scatters) {
-      out.albedo = weight * at_most_one(geometry_.look(hit.object).color());
-      return out;
-    }
     if (hit.kind != Kind::dielectric) {
       out.albedo = weight * albedo_of(hit, p, d, way);
       return out;

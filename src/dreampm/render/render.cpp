@@ -49,6 +49,36 @@ void check_lens(const model::Camera& camera) {
     fail_input("render: the camera's focus is not finite; give a point");
 }
 
+/// Lights the floor, by what `bounce` sees from it.
+void bake(FloorLight& light, const Integrator& bounce, bool moves, const RenderSettings& settings) {
+  light.bake_sun(settings.caustics, photons, settings.seed);
+  const auto from = [&](const Vec3f& p, const Vec3f& d, Sampler& random) {
+    const float time = moves ? random.next() : 0.5f;
+    return bounce.radiance(p, d, random, time);
+  };
+  // twice: the second round sees the light that the floor throws back on itself
+  light.bake_sky(from, sky_rays_first, settings.seed);
+  light.bake_sky(from, sky_rays, settings.seed + 1);
+}
+
+Picture exposed(const RenderSettings& settings, const Film::View& view, bool clamp, const RenderProgress& report) {
+  Picture out;
+  out.width = settings.width, out.height = settings.height;
+  out.box = settings.crop.value_or(PixelBox{0, 0, settings.width, settings.height});
+  out.traced = with_surroundings(out.box, settings);
+  Film film(settings, out.traced, view, clamp);
+  film.expose([&](double done) { report(0.2 + 0.4 * done); });
+  film.ask_more();
+  film.expose([&](double done) { report(0.6 + 0.4 * done); });
+  out.linear = film.linear();
+  out.report = film.report(out.box);
+  if (view.firsts != nullptr) out.surfaces = film.surfaces();
+  if (settings.denoise)
+    denoise(out.linear, out.surfaces.albedo, out.surfaces.normal, out.traced.width(), out.traced.height());
+  if (!settings.surfaces) out.surfaces = {};
+  return out;
+}
+
 /// All but the files.
 void check_values(const RenderScene& scene, const RenderSettings& s) {
   in_range("width", s.width, 8, 16384);
