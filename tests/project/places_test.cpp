@@ -89,9 +89,11 @@ TEST_F(Places, ASolidShapeIsAFileAndTwoRows) {
                                    "src/dreampm/rigid/exact_forms.h", "src/dreampm/play/tools/pour.cpp"));
 }
 
-TEST_F(Places, ALookIsReadInOnePlaceAndTracedFromOne) {
-  for (const char* look : {"LookType::wood", "LookType::plastic"})
-    EXPECT_THAT(of({look}), UnorderedElementsAre("src/dreampm/scene/look.cpp", "src/dreampm/render/looks.cpp"));
+TEST_F(Places, ALookIsAFileAndARowOfEachList) {
+  for (const std::string look : {"wood", "plastic"})
+    EXPECT_THAT(of({"LookType::" + look, "make_" + look, "LOOK(" + look + ")"}),
+                UnorderedElementsAre("src/dreampm/scene/look.cpp", "src/dreampm/render/looks.h",
+                                     "src/dreampm/render/" + look + ".cpp"));
 }
 
 }  // namespace

@@ -46,6 +46,13 @@ TEST(Furnace, AWhiteCloudIsInvisible) {
       }
 }
 
+TEST(Furnace, ADenseWhiteCloudIsInvisible) {
+  // Paths leap where surfaces are far.
+  const TriMesh ball = ball_mesh({}, 1, 24);
+  const auto scene = before_uniform_sky({&ball, cloud(1.3, 400)}, 20);
+  EXPECT_NEAR(mean_of(render(scene, small_picture(12, 12, 8))).y, 1, 0.005f);
+}
+
 TEST(Furnace, CloudsOfColorLoseLightByChannel) {
   const TriMesh ball = ball_mesh({}, 1, 24);
   const auto scene = before_uniform_sky({&ball, model::Look::dielectric(1.333, {0.5, 0, 2}, {1, 4, 8})}, 12);
@@ -90,7 +97,7 @@ RenderScene deep_layer(const TriMesh& layer, const model::Look& look) {
 
 TEST(Cloud, ADeepLayerReflectsAsChandrasekharSays) {
   const TriMesh layer = box_mesh({-40, -40, -40}, {40, 0, 40});
-  for (const double albedo : {0.5, 0.9}) {
+  for (const double albedo : {0.5, 0.9, 0.999}) {
     const HFunction h(albedo);
     RenderScene scene = deep_layer(layer, cloud(1, 2 * albedo, 2 * (1 - albedo)));
     // Under an even sky: 1 - H(mu) sqrt(1 - albedo).

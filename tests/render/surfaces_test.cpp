@@ -1,11 +1,13 @@
 // Metal, plastic and wood: what they send back, by samples and by formula.
 #include <gtest/gtest.h>
 
+#include <howto/plaster.h>
 #include <array>
 #include <string>
 #include <vector>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/file.h"
 #include "dreampm/render/color.h"
 #include "dreampm/render/glossy.h"
 #include "dreampm/render/looks.h"
@@ -75,6 +77,8 @@ std::vector<Surface> surfaces() {
                              " in " + std::to_string(outer),
                          std::move(bsdf)});
       }
+  model::Look plaster = model::Look::opaque({1, 1, 1}, 0.8);
+  all.push_back({"plaster of the how-to", make_plaster(plaster)->bsdf(1)});
   return all;
 }
 
@@ -160,6 +164,34 @@ TEST(Surfaces, AreTheSameBothWays) {
         EXPECT_GT(there[k], 0) << s.name;
       }
     }
+}
+
+TEST(Surfaces, SendBackNoMoreThanArrives) {
+  constexpr int n = 120;
+  for (const Surface& s : surfaces())
+    for (const float c : {0.95f, 0.5f, 0.15f}) {
+      double all = 0;
+      for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j)
+          for (int lobe = 0; lobe < s.bsdf->lobes(); ++lobe)
+            all += 2 * (i + 0.5) / n *
+                   static_cast<double>(s.bsdf
+                                           ->sample(lobe, view_of(c), {1, 1, 1},
+                                                    1 - std::pow((static_cast<float>(i) + 0.5f) / n, 2.0f),
+                                                    (static_cast<float>(j) + 0.5f) / n)
+                                           .weight.y) /
+                   (n * n);
+      // The bound is that of tables of 48 entries.
+      EXPECT_LT(all, 1.002) << s.name << ", cosine " << c;
+      if (s.name.starts_with("plaster")) continue;
+      EXPECT_GT(all, 0.998) << s.name << ", cosine " << c;
+    }
+}
+
+TEST(Surfaces, TheListOfLooksStandsInTheGuide) {
+  const std::string page = read_file(std::filesystem::path(DM_SOURCE_DIR) / "docs" / "howto" / "looks.md");
+  for (const std::string_view type : model::look_type_names)
+    EXPECT_NE(page.find("\n| `" + std::string(type) + "` |"), page.npos) << type;
 }
 
 TEST(Surfaces, AMetalReflectsItsColorAhead) {

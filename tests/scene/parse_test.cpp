@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 
 #include "dreampm/base/error.h"
+#include "dreampm/scene/emit.h"
 
 namespace dreampm::scene {
 namespace {
@@ -245,6 +247,43 @@ TEST(Parse, ALookHasWhatItsTypeIsKnownFor) {
   ASSERT_TRUE(d.render.cut);
   EXPECT_EQ(d.render.cut->of, (std::vector<std::string>{"crate", "water"}));
   EXPECT_FALSE(good(std::string(start)).render.cut);
+}
+
+TEST(Parse, HoneyAndSnowLookLikeThemselvesAndPresetsOfLooksGiveWayToKeys) {
+  const std::string text =
+      std::string(start.substr(0, start.find("materials"))) +
+      "materials: {water: {type: newtonian}, honey: {type: newtonian, preset: honey}, snow: {type: "
+      "snow}, jelly: {type: elastic, preset: jelly}}\n" +
+      start.substr(start.find("bodies")) + "render: {looks: {water: {preset: milk, absorption: [1, 2, 3]}}}\n";
+  const model::Scene d = good(text);
+  const auto& looks = d.render.looks;
+  EXPECT_NEAR(looks.at("honey").ior, 1.49, 0.02);
+  EXPECT_GT(looks.at("snow").scattering.x, 100);
+  EXPECT_EQ(looks.at("jelly").type, model::LookType::opaque) << "matte, in the colors of its bodies";
+  EXPECT_EQ(looks.at("water").scattering, (Vec3d{2550, 3210, 3770}));
+  EXPECT_EQ(looks.at("water").absorption, (Vec3d{1, 2, 3}));
+  EXPECT_EQ(good(write_scene(d)).render, d.render) << "what is written is read as the same";
+  EXPECT_THAT(bad(start + "render: {looks: {water: {preset: mlik}}}\n"), HasSubstr("milk"));
+  EXPECT_THAT(bad(start + "render: {looks: {water: {type: opaque, scattering: [1, 1, 1]}}}\n"),
+              HasSubstr("scattering is only for type dielectric"));
+}
+
+TEST(Parse, APlaceBringsItsSkyAndAnEnvironmentNoSun) {
+  const auto light = [](const std::string& render) { return good(start + "render: " + render + "\n").render.light; };
+  EXPECT_EQ(light("{}").sky, SkyKind::clear);
+  EXPECT_EQ(light("{}").sun.strength, 8);
+  EXPECT_EQ(light("{stage: {place: studio}}").sky, SkyKind::studio);
+  EXPECT_EQ(light("{stage: {place: studio}}").sun.strength, 0);
+  EXPECT_EQ(light("{stage: {place: night}, light: {sun: {strength: 3}}}").sun.strength, 3);
+  EXPECT_EQ(light("{stage: {place: night}, light: {sky: clear}}").sun.strength, 8);
+  const std::string file = ::testing::TempDir() + "around.exr";
+  std::ofstream(file) << "read when it is drawn";
+  const model::Light around = light("{light: {environment: " + file + ", turn: 30}}");
+  EXPECT_EQ(around.environment, file);
+  EXPECT_EQ(around.turn, 30);
+  EXPECT_EQ(around.sun.strength, 0);
+  EXPECT_THAT(bad(start + "render: {light: {environment: nowhere.exr}}\n"),
+              HasSubstr("render.light.environment is 'nowhere.exr': no such file"));
 }
 
 TEST(Parse, AFileThatIsNotThere) {

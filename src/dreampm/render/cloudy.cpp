@@ -7,8 +7,13 @@
 namespace dreampm::trace {
 namespace {
 
-/// Steps of one path; in milk without any absorption one of ten thousand paths is longer.
+/// Steps of one path.
 constexpr int most_scatterings = 4096;
+
+/// The steps after which a path asks how far the surfaces are.
+constexpr int look_around = 8;
+/// Light that starts this many mean free paths within a ball leaves it as diffusion says.
+constexpr float diffuse_depth = 8;
 
 /// The chances with which channels choose a free path: as much as each still carries.
 Vec3f shares_of(const Vec3f& weight) {
@@ -45,6 +50,8 @@ bool Integrator::scatter(Path& r, const Interior& in, const FreePath& free, Samp
   }
   r.o = r.o + r.d * free.length;
   r.distance += free.length;
+  r.clear = std::max(0.0f, r.clear - free.length);
+  if (r.scatterings % look_around == 0) leap(r, in, random);
   if (sky_.has_sun()) {
     const float a = random.next(), b = random.next();
     sum += r.weight * lit_within(r, in, {sky_.sample_sun(a, b), 1e9f, sky_.sun_irradiance()}, random);
@@ -57,12 +64,36 @@ bool Integrator::scatter(Path& r, const Interior& in, const FreePath& free, Samp
   return true;
 }
 
+// From the middle of a ball that is large beside the mean free path light diffuses to its surface,
+// evenly by symmetry, and what is not absorbed on the way is x/sinh x with x = R sqrt(3 sigma_a
+// (sigma_a + sigma_s')): walk on spheres (Muller 1956; with absorption, Elepov and Mikhailov 1969).
+// Sunlight that has not scattered yet does not come so deep.
+void Integrator::leap(Path& r, const Interior& in, Sampler& random) const {
+  const Vec3f reduced = in.scattering * (1 - in.anisotropy) + in.absorption;
+  const float least = std::min({reduced.x, reduced.y, reduced.z});
+  if (!(least > 0)) return;
+  const float worth = diffuse_depth / least;
+  if (r.clear < worth) r.clear = geometry_.clearance(r.o, 64 * worth);
+  if (r.clear < worth) return;
+  const auto left = [&](float absorbed, float all) {
+    const float x = r.clear * std::sqrt(3 * absorbed * all);
+    return x < 1e-3f ? 1 : x > 60 ? 0 : x / std::sinh(x);
+  };
+  r.weight = r.weight * Vec3f{left(in.absorption.x, reduced.x), left(in.absorption.y, reduced.y),
+                              left(in.absorption.z, reduced.z)};
+  const float a = random.next(), b = random.next();
+  r.d = sample_phase({0, 1, 0}, 0, a, b);
+  r.o = r.o + r.d * r.clear;
+  r.clear = 0;
+}
+
 // The line from a light bends at the face where it comes in. That face is looked for along the
 // straight line, no further than a free path; the light's line is then the one that a flat face
 // there would bend. Flat faces get it exactly; a curved one gathers or spreads no light.
 Vec3f Integrator::lit_within(const Path& r, const Interior& in, const LightSample& light, Sampler& random) const {
   const Vec3f share = shares_of(r.weight);
   const float reach = draw_length(share, in.extinction, random);
+  if (reach < r.clear) return {};
   Media media = r.media;
   const Hit face = cast_visible(geometry_, r.o, light.direction, media, std::min(reach, light.distance));
   if (face.kind != Kind::dielectric || !face.back) return {};

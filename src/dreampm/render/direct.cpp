@@ -104,8 +104,6 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
                            std::min(before, after) / std::max(before, after), cos_out);
     } else if (hit.kind == Kind::pane) {
       share = share * pane_tint * (1 - pane_reflectance(std::fabs(dot(hit.normal, d))));
-    } else if (!through_clear) {
-      return {};
     } else if (!hit.back) {
       share = share * bar_shade;
     }

@@ -26,7 +26,7 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
     }
     const Vec3f p = o + d * hit.t;
     way += hit.t;
-    if (const Interior* in = geometry_.interior(media.top())) weight = weight * transmission(in->absorption, hit.t);
+    if (const Interior* in = geometry_.interior(media.top())) weight = weight * transmission(in->extinction, hit.t);
     if (hit.kind == Kind::pane || (hit.grain > 0 && hit.opacity < 0.5f)) {
       if (hit.kind == Kind::pane) weight = weight * pane_tint;
       o = p + d * geometry_.epsilon();
@@ -66,9 +66,9 @@ Vec3f FirstHits::albedo_of(const Hit& hit, const Vec3f& p, const Vec3f& d, float
     const Vec3f far = at_most_one(sky_.radiance(normalized(Vec3f{d.x, 0, d.z}), false));
     return mix(pattern_.albedo(p.x, p.z, way * pixel_angle_ / std::max(0.05f, -d.y)), far, pattern_.fade(p.x, p.z));
   }
-  if (hit.grain > 0) return hit.color;
-  const float footprint = way * pixel_angle_ / std::max(0.1f, std::fabs(dot(hit.geometric, d)));
-  return geometry_.look(hit.object).color_at({p - hit.moved, hit.color, geometry_.frame(hit.object), footprint});
+  return geometry_.look(hit.object)
+      .color_at({p - hit.moved, hit.color, geometry_.frame(hit.object),
+                 way * pixel_angle_ / std::max(0.1f, std::fabs(dot(hit.geometric, d)))});
 }
 
 }  // namespace dreampm::trace

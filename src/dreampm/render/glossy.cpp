@@ -47,13 +47,14 @@ void Glossy::tabulate() {
     const Vec3f view{std::sqrt(std::max(0.0f, 1 - c * c)), 0, c};
     float sum = 0;
     for (int k = 0; k < table_samples * table_samples; ++k) {
-      const float a = (static_cast<float>(k % table_samples) + 0.5f) / table_samples,
+      // denser where normals are steep
+      const float t = (static_cast<float>(k % table_samples) + 0.5f) / table_samples,
                   b = (static_cast<float>(k / table_samples) + 0.5f) / table_samples;
-      const Vec3f h = visible_normal(view, alpha_, a, b);
+      const Vec3f h = visible_normal(view, alpha_, 1 - t * t, b);
       const float cos_half = dot(view, h), cos_light = 2 * cos_half * h.z - c;
       if (cos_light <= 0) continue;
       const float lv = lambda(c, alpha_);
-      sum += reflectance(cos_half, white).x * (1 + lv) / (1 + lv + lambda(cos_light, alpha_));
+      sum += 2 * t * reflectance(cos_half, white).x * (1 + lv) / (1 + lv + lambda(cos_light, alpha_));
     }
     share_[static_cast<std::size_t>(i)] = sum / (table_samples * table_samples);
   }

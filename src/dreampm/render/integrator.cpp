@@ -49,8 +49,10 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, Stack& stack) const 
   const bool cloudy = before != nullptr && before->scatters;
   FreePath free;
   if (cloudy) free = free_path(r, *before, random);
+  if (cloudy && free.length < r.clear) return scatter(r, *before, free, random, sum);
   const Hit hit = cast_visible(geometry_, r.o, r.d, r.media, free.length);
   if (cloudy && hit.kind == Kind::none) return scatter(r, *before, free, random, sum);
+  r.clear = 0;
   if (options_.lamps != nullptr && r.sun_disc)
     if (const Vec3f* lamp = options_.lamps->met(r.o, r.d, hit.t)) {
       sum += r.weight * *lamp;
@@ -225,9 +227,10 @@ bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   }
   const Split s = split_light(geometry_, hit, r.d, r.media);
   Path reflected = r, passed = r;
-  // Only flat glass lets light through straight, so that what lies beyond lit the last surface.
+  // Only glass of the basin lets light through straight, so that the sky lit the last surface
+  // through it.
   reflected.density = 0;
-  if (hit.kind != Kind::pane) passed.density = 0;
+  if (hit.kind == Kind::dielectric) passed.density = 0;
   reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected;
   passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.media = s.refracted_media;
   reflected.weight *= s.reflectance;

@@ -54,12 +54,14 @@ class Integrator {
   LightSample sunlight(const Vec3f& p, const Vec3f& n, const Vec3f& face, const Media& media, Sampler& random,
                        float away = 0) const;
   /// What of a light is left on the way from o along d; it leaves clear matter along `outside`.
-  /// `through_clear` false: clear matter that is not flat glass stops it.
+  /// `through_clear` false: clear matter other than the basin's glass stops it.
   Vec3f transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media media, float reach, bool through_clear) const;
 
   // Cloudy matter: cloudy.cpp.
   FreePath free_path(const Path& path, const Interior& in, Sampler& random) const;
   bool scatter(Path& path, const Interior& in, const FreePath& free, Sampler& random, Vec3f& sum) const;
+  /// Brings the path most of the way to the nearest surface in one step, where that is far.
+  void leap(Path& path, const Interior& in, Sampler& random) const;
   Vec3f lit_within(const Path& path, const Interior& in, const LightSample& light, Sampler& random) const;
 
   const Geometry& geometry_;

@@ -21,6 +21,7 @@ struct Integrator::Path {
   /// for mirrors
   float density = 0;
   int scatterings = 0;  ///< in cloudy matter so far
+  float clear = 0;      ///< m: within that no surface is around o, while it is in cloudy matter
 };
 
 struct Integrator::Stack {

@@ -46,6 +46,9 @@ class Geometry {
   /// `medium`: the object that the ray runs in, or air. d has unit length. `time`: through the
   /// exposure, 0 to 1. Nothing further than `reach` [m] is met.
   Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach = 1e9f) const;
+  /// Returns m: nothing that a ray in clear matter may meet lies nearer to p; at most `most`. 0
+  /// where anything moves within the exposure.
+  float clearance(const Vec3f& p, float most) const;
   /// m/s, of what was hit, in the middle of the exposure.
   Vec3f velocity(const Hit& hit) const;
   /// True if anything is at different places within the exposure.

@@ -33,6 +33,8 @@ struct Geometry::Shape {
   std::vector<float> opacity{};     ///< per grain; of others empty
   std::vector<Vec3f> centers{};     ///< m, per grain, with their radii
   std::vector<float> radii{};
+  const Vec3f* points = nullptr;                ///< m, of the triangles; Embree has them
+  const std::array<float, 4>* balls = nullptr;  ///< m, middles and radii of spheres; Embree has them
   std::vector<Vec3f> velocities{};           ///< m/s, per sphere, grain or vertex; empty: at rest
   std::vector<std::vector<Vec3f>> steps{};   ///< m, per step and vertex; or empty
   std::vector<std::vector<Vec3f>> turned{};  ///< normals per step and vertex; or empty

@@ -21,8 +21,9 @@ struct PhotonMap::Beam {
   struct Start {
     Vec3f origin, direction, power;  ///< power: of one of N, times N
   };
-  Start start(Sampler& random) const {
-    const float a = random.next(), b = random.next(), c = random.next(), d = random.next();
+  /// c, d: even over the ball as seen from the light.
+  Start start(float c, float d, Sampler& random) const {
+    const float a = random.next(), b = random.next();
     if (sun != nullptr) {
       const Vec3f to_sun = sun->sample_sun(a, b);
       const float r = radius * std::sqrt(c), phi = 2 * pi * d;
@@ -64,10 +65,11 @@ void PhotonMap::follow(const Geometry& geometry, const Beam& beam, bool on_floor
                        std::uint32_t pass) {
   std::array<std::vector<Landed>, parts> landed;
   parallel_for(parts, 1, [&](std::size_t part) {
-    const std::uint32_t stream = stream_of(seed, pass, 0);
     for (auto k = static_cast<std::uint32_t>(part); k < static_cast<std::uint32_t>(photons); k += parts) {
-      Sampler random(stream, k);
-      const Beam::Start start = beam.start(random);
+      Sampler random(stream_of(seed, pass, k), 0);
+      // on a lattice of rank 1 (golden ratio), which a disc winds up to a spiral
+      const Beam::Start start = beam.start((static_cast<float>(k) + 0.5f) / static_cast<float>(photons),
+                                           unit_float(k * 2654435769u), random);
       const float time = geometry.moves() ? random.next() : 0.5f;
       follow_photon(geometry, start.origin, start.direction, time, true,
                     [&](const Hit& hit, const Vec3f& p, const Vec3f& d, const Vec3f& weight, bool bent) {

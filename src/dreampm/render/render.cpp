@@ -16,7 +16,8 @@ namespace {
 
 using namespace trace;
 
-constexpr int photons = 1000000, sky_rays = 24, sky_rays_first = 8;
+constexpr int photons = 1000000, photons_of_bodies = 400000, sky_rays = 24, sky_rays_first = 8;
+
 /// Some settings are floats: what a float makes of a bound is within it, too.
 void in_range(const char* what, double value, double low, double high) {
   const double least = std::min(low, double(static_cast<float>(low)));
@@ -78,9 +79,8 @@ Picture exposed(const RenderSettings& settings, const Film::View& view, bool cla
   return out;
 }
 
-}  // namespace
-
-void check_render(const RenderScene& scene, const RenderSettings& s) {
+/// All but the files.
+void check_values(const RenderScene& scene, const RenderSettings& s) {
   in_range("width", s.width, 8, 16384);
   in_range("height", s.height, 8, 16384);
   in_range("min_samples", s.min_samples, 2, 65536);
@@ -127,8 +127,15 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   const trace::Camera sees_its_focus(scene.camera, scene.basin, s.width, s.height);
 }
 
+}  // namespace
+
+void check_render(const RenderScene& scene, const RenderSettings& settings) {
+  check_values(scene, settings);
+  if (!scene.light.environment.empty()) trace::read_environment(scene.light);
+}
+
 Picture render_picture(const RenderScene& scene, const RenderSettings& settings, const RenderProgress& progress) {
-  check_render(scene, settings);
+  check_values(scene, settings);
   const auto report = [&](double done) {
     if (progress) progress(done);
   };
@@ -152,7 +159,8 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
   const Box3f clear = clear_bounds(scene, geometry);
   std::optional<PhotonMap> caustics;
   if (settings.caustics && !clear.empty() && (!baked || has_matte(scene, geometry)))
-    options.photons = &caustics.emplace(geometry, sky, lamps, clear, !baked, photons, settings.seed);
+    options.photons =
+        &caustics.emplace(geometry, sky, lamps, clear, !baked, baked ? photons_of_bodies : photons, settings.seed);
   if (baked && scene.stage.floor == model::Floor::tiles) {
     PathOptions gather = options;
     gather.looks = gather.sun_disc = false;

@@ -125,7 +125,8 @@ struct Picture {
 /// Called now and then from the calling thread with the share done, 0 to 1.
 using RenderProgress = std::function<void(double)>;
 
-/// Throws InputError naming a value that is out of range, as `render` does.
+/// Throws InputError naming a value that is out of range, or what is wrong with the environment's
+/// file, as `render` does.
 void check_render(const RenderScene& scene, const RenderSettings& settings);
 
 /// Traces the picture; the same bytes for any number of threads. Throws InputError naming the value

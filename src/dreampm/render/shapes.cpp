@@ -106,6 +106,7 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
                                                                RTC_FORMAT_FLOAT3, sizeof(Vec3f), vertices));
     if (points == nullptr) embree_->check("reserving a mesh");
     std::ranges::copy(shape.steps.empty() ? mesh.vertices : shape.steps[k], points);
+    shape.points = points;
   }
   auto* faces = static_cast<std::array<std::uint32_t, 3>*>(
       rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, mesh.triangles.size()));
@@ -203,6 +204,7 @@ void Geometry::add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, co
     auto* balls = static_cast<std::array<float, 4>*>(
         rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT4, 16, n));
     if (balls == nullptr) embree_->check("reserving spheres");
+    if (shape.centers.empty()) shape.balls = balls;
     for (std::size_t i = 0; i < n; ++i) {
       const float r = radius(i);
       const Vec3f p = positions[i] + (moving ? shape.velocities[i] * ((step == 0 ? -0.5f : 0.5f) * open_) : Vec3f{});

@@ -40,10 +40,10 @@ struct SoftBox {
 /// Soft boxes in a gray room: a large one as the key, a strip to the side, one above, and a narrow
 /// one behind for the rims.
 Environment studio_boxes() {
-  static const std::array<SoftBox, 4> boxes{{{{-0.70f, 0.75f, 0.55f}, 0.42f, 0.42f, {7.5f, 7.2f, 6.8f}},
-                                             {{0.85f, 0.35f, 0.75f}, 0.14f, 0.60f, {5.0f, 5.4f, 6.0f}},
-                                             {{0.05f, 1.0f, 0.0f}, 0.60f, 0.35f, {4.5f, 4.5f, 4.5f}},
-                                             {{0.55f, 0.50f, -0.85f}, 0.45f, 0.10f, {8.0f, 8.4f, 9.0f}}}};
+  static const std::array<SoftBox, 4> boxes{{{{-0.70f, 0.75f, 0.55f}, 0.42f, 0.42f, {3.3f, 3.15f, 2.95f}},
+                                             {{0.85f, 0.35f, 0.75f}, 0.14f, 0.60f, {2.1f, 2.3f, 2.6f}},
+                                             {{0.05f, 1.0f, 0.0f}, 0.60f, 0.35f, {1.7f, 1.7f, 1.7f}},
+                                             {{0.55f, 0.50f, -0.85f}, 0.45f, 0.10f, {3.4f, 3.6f, 3.9f}}}};
   constexpr int width = 1024, height = 512;
   std::vector<Vec3f> pixels(static_cast<std::size_t>(width) * height);
   parallel_for(height, 8, [&](std::size_t y) {
@@ -52,7 +52,7 @@ Environment studio_boxes() {
       const float phi = 2 * pi * ((static_cast<float>(x) + 0.5f) / width - 0.5f);
       const Vec3f d{std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi)};
       // the room: lighter towards its floor
-      Vec3f c = mix(Vec3f{0.62f, 0.62f, 0.63f}, Vec3f{0.10f, 0.105f, 0.115f}, smoothstep(-0.1f, 0.8f, d.y));
+      Vec3f c = mix(Vec3f{0.34f, 0.34f, 0.35f}, Vec3f{0.06f, 0.063f, 0.07f}, smoothstep(-0.1f, 0.8f, d.y));
       for (const SoftBox& box : boxes) {
         const Vec3f n = normalized(box.towards),
                     side = normalized(cross(std::fabs(n.y) < 0.95f ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1}, n)),
@@ -74,6 +74,8 @@ Vec3f night(const Vec3f& d) {
   return mix(Vec3f{0.020f, 0.022f, 0.034f}, Vec3f{0.003f, 0.005f, 0.013f}, smoothstep(0, 0.6f, d.y));
 }
 
+}  // namespace
+
 Environment read_environment(const model::Light& light) {
   Image image = read_exr_colors(light.environment);
   if (image.width != 2 * image.height)
@@ -92,8 +94,6 @@ Environment read_environment(const model::Light& light) {
   if (!(sum > 0)) fail_input("{}: black all over; an environment has light", light.environment);
   return {image.width, image.height, std::move(image.linear), static_cast<float>(light.turn) * degree};
 }
-
-}  // namespace
 
 Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {
   const auto strength = static_cast<float>(light.sun.strength);

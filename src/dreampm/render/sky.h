@@ -8,11 +8,14 @@
 
 namespace dreampm::trace {
 
+/// Reads the light's environment. Throws InputError naming the file where it is missing, damaged,
+/// not twice as wide as high, not finite or black.
+Environment read_environment(const model::Light& light);
+
 class Sky {
  public:
   /// `physical` gives the disc its true radiance; else it is dimmed to what the tone curve can
-  /// show. Reads the light's environment: throws InputError naming the file where it is missing,
-  /// damaged, or not twice as wide as high.
+  /// show. Throws as read_environment.
   Sky(const model::Light& light, bool physical);
   /// Radiance from direction d (unit length).
   Vec3f radiance(const Vec3f& d, bool with_sun) const;

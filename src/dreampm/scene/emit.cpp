@@ -126,7 +126,7 @@ std::string scene_hash(const model::Scene& scene, Part part, const std::string& 
   }
   add_surface(later, scene);
   if (part >= Part::render) {
-    Render r = scene.render;
+    model::Render r = scene.render;
     r.format = model::PictureFormat::png;  // it adds files; the picture is the same
     if (std::string& environment = r.light.environment; !environment.empty()) {
       add_file(later, environment);

@@ -40,9 +40,11 @@ const Schema<Light>& light_schema() {
           .no_default()
           .says("A clear sky, soft boxes in a gray room, or darkness; absent: that of `stage.place`."),
       environment(),
-      written_when<Light>(number("turn", &Light::turn, between(-360, 360, "degrees")), has_environment)
+      number("turn", &Light::turn, between(-360, 360, "degrees"))
+          .when(has_environment, "a light with an environment")
           .says("How far the environment is turned, by the right hand about +y."),
-      written_when<Light>(number("strength", &Light::strength, between(1e-6, 1e6)), has_environment)
+      number("strength", &Light::strength, between(1e-6, 1e6))
+          .when(has_environment, "a light with an environment")
           .says("By what the environment's radiance is multiplied."),
       section("sun", &Light::sun, sun_schema()).says("The sun; absent with an environment, in a studio and at night.")};
   return schema;

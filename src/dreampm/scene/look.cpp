@@ -271,6 +271,12 @@ const Schema<Video>& video_schema() {
 }
 
 void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out) {
+  // A look whose type is given is one of that type, and not what is usual here but for its color.
+  if (node.is_map() && node.find("type") && !node.find("preset")) {
+    const Vec3d usual = out.color;
+    out = Look{};
+    out.color = usual;
+  }
   read_map(in, node, path, look_schema(), out);
   give_defaults(out, node);
   if (out.type == LookType::dielectric) out.color = Look{}.color;  // it has none, whatever was usual here
