@@ -6,17 +6,6 @@
 namespace dreampm::scene {
 namespace {
 
-/// A format of which there is one so far.
-template <class T>
-Field<T> only_word(std::string key, std::string word) {
-  return Field<T>{std::move(key),
-                  [=](Reading& in, const YamlNode& n, const std::string& path, T&) {
-                    read_word(in.problems, n, path, std::vector<std::string>{word});
-                  },
-                  [=](const T&, const std::string& k, YamlNode& map) { map.put(k, YamlNode::scalar(word)); }}
-      .takes(word_info({word}));
-}
-
 /// A list of words, each at most once.
 template <class T, std::size_t n>
 Field<T> words(std::string key, std::vector<std::string> T::* member, const std::array<const char*, n>& known) {
