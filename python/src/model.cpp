@@ -268,6 +268,7 @@ void render_structs(nb::module_& m) {
   Section<Surface>(m, "Surface", "How a surface is wrapped around particles.", "surface.")
       .key("voxel", &Surface::voxel)
       .key("smooth", &Surface::smooth)
+      .key("overlap", &Surface::overlap)
       .key("format", &Surface::format)
       .done();
   Section<Look>(m, "Look", "How a material, collider or rigid body looks.", "render.looks.")

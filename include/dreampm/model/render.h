@@ -36,6 +36,7 @@ struct Surface {
   double voxel = 0.5;  ///< in units of dx
   int smooth = 2;      ///< rounds of smoothing, 0 to 10
   SurfaceFormat format = SurfaceFormat::ply;
+  double overlap = 0.5;  ///< spacings that it reaches into walls and colliders, 0 to 1
   bool operator==(const Surface&) const = default;
 };
 

@@ -138,7 +138,6 @@ void check_render(const RenderScene& scene, const RenderSettings& s) {
   in_range("sun azimuth", scene.light.sun.azimuth, -3600, 3600);
   in_range("sun angle", scene.light.sun.angle, 0.1, 20);
   in_range("sun strength", scene.light.sun.strength, 0, 1e6);
-  in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
     fail_input("render: the basin from ({}, {}, {}) to ({}, {}, {}) has no volume; give min below max", b.min.x,
