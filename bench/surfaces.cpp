@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "bench/course.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/region.h"
 #include "dreampm/io/ply.h"
@@ -53,11 +54,6 @@ std::vector<WettedSolid> pillar_and_ball() {
   for (const Shape& s : {Shape::cylinder({1.5, 0.4, 0.5}, 0.15, 1), Shape::sphere({0.3, 0.25, 0.7}, 0.15)})
     solids.push_back({make_region(s, 0.01, {}), {}});
   return solids;
-}
-
-double median_of(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
 }
 
 double seconds_since(std::chrono::steady_clock::time_point then) {

@@ -47,7 +47,7 @@ struct SurfaceSettings {
   float overlap = 0;        ///< spacings that the mesh reaches into the walls and solids that it touches, 0 to 1
   float support = 4;        ///< reach of a particle's kernel in spacings, 2.5 to 6
   bool keep_field = false;  ///< hand the field out with the mesh, e.g. for write_vdb
-  std::function<void(std::string_view stage)> ended{};  ///< told when a stage of the recipe has ended
+  std::function<void(std::string_view stage)> ended{};  ///< called as a stage of the recipe ends
 };
 
 struct SurfaceResult {
