@@ -44,8 +44,8 @@ std::vector<Vec3f> splash(float h) {
         if (in_liquid(p)) points.push_back(p);
       }
   for (std::uint64_t i = 0, spray = points.size() / 50; i < spray; ++i)
-    points.push_back(static_cast<Vec3f>(
-        Vec3d{2 * uniform(7, 3 * i), 0.5 + 0.45 * uniform(7, 3 * i + 1), uniform(7, 3 * i + 2)}));
+    points.push_back(
+        static_cast<Vec3f>(Vec3d{2 * uniform(7, 3 * i), 0.5 + 0.45 * uniform(7, 3 * i + 1), uniform(7, 3 * i + 2)}));
   return points;
 }
 

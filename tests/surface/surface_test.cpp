@@ -206,10 +206,11 @@ TEST(Surface, AStillTankHardlyFlickers) {
   for (std::size_t v = 0; v < before.vertices.size(); ++v) {
     const Vec3f& p = before.vertices[v];
     if (before.normals[v].y < 0.9f || p.y < 0.05f) continue;
-    float nearest = 1, height = 0;
+    float nearest = 1, off = 0;
     for (const Vec3f& q : after.vertices)
-      if (const float d = std::hypot(q.x - p.x, q.z - p.z); d < nearest && q.y > 0.09f) nearest = d, height = q.y;
-    sum += static_cast<double>(std::abs(height - p.y)), ++count;
+      if (const float d = std::hypot(q.x - p.x, q.z - p.z); d < nearest && q.y > 0.09f)
+        nearest = d, off = dot(before.normals[v], q - p);
+    sum += static_cast<double>(std::abs(off)), ++count;
   }
   ASSERT_GT(count, 1000u);
   EXPECT_LT(sum / static_cast<double>(count), 0.02 * static_cast<double>(kH));
