@@ -5,6 +5,7 @@
 #include "bench/bench.h"
 #include "bench/edits.h"
 #include "bench/solvers.h"
+#include "bench/surfaces.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
@@ -279,6 +280,37 @@ void add_edits(CLI::App& bench, Action& action) {
   });
 }
 
+void add_surfaces(CLI::App& bench, Action& action) {
+  struct Arguments {
+    SurfaceBenchOptions options;
+    std::string write;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
+  CLI::App* verb = add_verb(bench, "surface", "What wrapping particles in a mesh costs, stage by stage",
+                            "dreampm bench surface --particles 1048576 --threads 2");
+  verb->add_option("--particles", a->options.particles, "about how many")
+      ->capture_default_str()
+      ->transform(whole_number(1000, 100000000));
+  verb->add_option("--voxel", a->options.voxel, "the edge of a voxel, in spacings")
+      ->capture_default_str()
+      ->check(number_in(0.125, 2));
+  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
+  verb->add_option("--rounds", a->options.rounds, "meshes, of which the median counts")
+      ->capture_default_str()
+      ->transform(whole_number(1, 1000));
+  verb->add_flag("--colliders", a->options.solids, "a pillar and a ball stand in the water");
+  verb->add_option("--write", a->write, "write the particles to this PLY file, for other programs");
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([a, &action] {
+    action = [a] {
+      a->options.write = a->write;
+      print_rows(bench_surface(a->options), 1, a->json);
+      return 0;
+    };
+  });
+}
+
 }  // namespace
 
 void add_bench(CLI::App& app, Action& action) {
@@ -289,6 +321,7 @@ void add_bench(CLI::App& app, Action& action) {
   add_all(*bench, action);
   add_frames(*bench, action);
   add_edits(*bench, action);
+  add_surfaces(*bench, action);
 #ifdef DM_APP
   add_bench_play(*bench, action);
 #endif

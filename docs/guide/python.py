@@ -68,7 +68,7 @@ figure.savefig("futures.png", dpi=100)
 
 # %% A surface, and a picture by the path tracer
 sim.restore(then)
-mesh = sim.surface("water")
+mesh = sim.surface("water", overlap=0)
 print(mesh)
 figure, panel = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 panel.imshow(dm.render(sim))

@@ -269,6 +269,7 @@ void render_structs(nb::module_& m) {
   Section<Surface>(m, "Surface", "How a surface is wrapped around particles.", "surface.")
       .key("voxel", &Surface::voxel)
       .key("smooth", &Surface::smooth)
+      .key("overlap", &Surface::overlap)
       .key("attributes", &Surface::attributes)
       .key("type", &Surface::type)
       .key("format", &Surface::format)

@@ -77,10 +77,10 @@ void add_particles(Held& held, const std::string& material, nb::handle positions
   held.call([&](Simulation& s) { s.add_particles(material, particles); });
 }
 
-TriMesh surface(Held& held, const std::optional<std::string>& material, double voxel, int smooth) {
+TriMesh surface(Held& held, const std::optional<std::string>& material, double voxel, int smooth, double overlap) {
   const std::vector<std::string> names = held.look([](const Simulation& s) { return s.scene().materials(); });
   if (!material && names.size() != 1) throw InputError("surface: the scene has several materials: name one");
-  return held.call([&](Simulation& s) { return s.surface(material.value_or(names[0]), {voxel, smooth}); });
+  return held.call([&](Simulation& s) { return s.surface(material.value_or(names[0]), {voxel, smooth, overlap}); });
 }
 
 Picture picture(Held& held, std::optional<int> width, std::optional<int> height, std::optional<int> samples) {
@@ -221,8 +221,10 @@ void bind_state(nb::class_<Held>& c) {
           "fields of that scene. Not in it: observers, what probes have measured, and the springs of `attach`.")
       .def("surface", surface, nb::arg("material") = nb::none(), nb::kw_only(),
            nb::arg("voxel") = SurfaceOptions().voxel, nb::arg("smooth") = SurfaceOptions().smooth,
+           nb::arg("overlap") = SurfaceOptions().overlap,
            "The surface of a material's particles as a Mesh; the only material needs no name. voxel: edge of a\n"
-           "voxel over that of a cell, 1/16 to 1 at 8 particles a cell; smooth: rounds of smoothing, 0 to 10.")
+           "voxel over that of a cell, 1/16 to 1 at 8 particles a cell; smooth: rounds of smoothing, 0 to 10;\n"
+           "overlap: spacings that it reaches into walls and colliders that it touches, 0 to 1.")
       .def("render", picture, nb::kw_only(), nb::arg("width") = nb::none(), nb::arg("height") = nb::none(),
            nb::arg("samples") = nb::none(), "The same as dreampm.render(sim).");
 }

@@ -106,7 +106,7 @@ TEST(Theory, NamesAloneExist) {
 
 TEST(Theory, ItsConstantsAreTheCodes) {
   std::string code;
-  for (const char* module : {"physics", "contact", "backend", "solver", "state"})
+  for (const char* module : {"physics", "contact", "backend", "solver", "state", "surface"})
     for (const auto& entry : fs::recursive_directory_iterator(root / "src/dreampm" / module))
       if (entry.is_regular_file()) code += text_of(entry.path());
   int constants = 0;

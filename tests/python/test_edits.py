@@ -160,7 +160,7 @@ def test_a_brush_takes_matter_along(tank):
 
 def test_surfaces_and_pictures(tank, tmp_path):
     sim = dm.Simulation(tank.with_({"render.size": [64, 48], "render.samples": 4}))
-    mesh = sim.surface("water")
+    mesh = sim.surface("water", overlap=0)
     assert mesh.vertices.dtype == np.float32 and mesh.vertices.shape[1] == 3
     assert mesh.faces.dtype == np.uint32 and mesh.faces.shape[1] == 3 and mesh.faces.max() < len(mesh.vertices)
     a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(np.float64) for i in range(3))

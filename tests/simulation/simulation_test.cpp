@@ -279,7 +279,7 @@ TEST(Simulation, SeveralRunSideBySide) {
 
 TEST(Simulation, MakesSurfacesAndPictures) {
   Simulation simulation(dam_and_jelly(), quiet());
-  const TriMesh mesh = simulation.surface("water");
+  const TriMesh mesh = simulation.surface("water", {.overlap = 0});
   ASSERT_GT(mesh.triangles.size(), 100u);
   double volume = 0;
   for (const auto& t : mesh.triangles)

@@ -25,7 +25,7 @@ SparseField three_balls() {
 TEST(Bodies, AreTheSameBy32AndBy64Bits) {
   SparseField field = three_balls();
   const Walls walls{{{-1, -1, -1}, {25, 9, 25}}, {}};
-  const QuadMesh mesh = contour(field, walls);
+  const QuadMesh mesh = contour(field, {walls});
   const std::vector<Vec3f> points{{4, 4, 4}, {12, 4, 4}, {4, 4, 12}, {4, 5, 12}, {20, 4, 20}};
   const Bodies narrow = find_bodies(field, mesh, points), wide = find_bodies(field, mesh, points, 0);
   EXPECT_EQ(narrow.count, 3u);

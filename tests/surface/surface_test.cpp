@@ -109,7 +109,7 @@ TEST(Surface, ALoneParticleBecomesASphereOfItsVolume) {
   SurfaceInput input = in_basin(points, {1, 1, 1});
   input.velocities = velocities;
   const SurfaceResult r = reconstruct(input);
-  EXPECT_EQ(r.spheres, 2u);
+  EXPECT_EQ(r.small_drops, 2u);
   const auto t = topology(r.mesh);
   EXPECT_TRUE(t.closed());
   EXPECT_EQ(t.components, 2u);
@@ -135,6 +135,85 @@ TEST(Surface, AThinSheetHasNoHole) {
   EXPECT_EQ(
       static_cast<long>(r.mesh.vertices.size()) - static_cast<long>(edges) + static_cast<long>(r.mesh.triangles.size()),
       2);
+}
+
+TEST(Surface, ASheetOfSixTenthsOfASpacingHasNoHole) {
+  // In the air: particles 1.29 h apart in a plane, so that they fill it 0.6 h thick.
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    const float apart = kH / std::sqrt(0.6f);
+    std::vector<Vec3f> points;
+    for (std::uint64_t j = 0; j < 30; ++j)
+      for (std::uint64_t i = 0; i < 30; ++i) {
+        const auto off = [&](std::uint64_t k) {
+          return 2 * static_cast<float>(uniform(seed, 3 * (30 * j + i) + k)) - 1;
+        };
+        points.push_back({apart * (static_cast<float>(i) + 0.3f * off(0)), 0.2f * kH * off(1),
+                          apart * (static_cast<float>(j) + 0.3f * off(2))});
+      }
+    const SurfaceResult r = reconstruct({.positions = points, .spacing = kH});
+    const auto t = topology(r.mesh);
+    EXPECT_TRUE(t.closed());
+    EXPECT_EQ(t.components, 1u);
+    const auto faces = static_cast<long>(r.mesh.triangles.size());
+    EXPECT_EQ(static_cast<long>(r.mesh.vertices.size()) - faces * 3 / 2 + faces, 2) << "no hole";
+    EXPECT_NEAR(r.volume / particles_volume(points), 1, 0.15);
+  }
+}
+
+TEST(Surface, SmallDropsOnTheFloorAreFlatCaps) {
+  // One particle, and four together.
+  for (const std::vector<Vec3f>& points :
+       {std::vector<Vec3f>{{0.15f, 0.003f, 0.15f}},
+        std::vector<Vec3f>{
+            {0.15f, 0.004f, 0.15f}, {0.158f, 0.004f, 0.15f}, {0.15f, 0.004f, 0.158f}, {0.158f, 0.005f, 0.159f}}}) {
+    for (const float overlap : {0.0f, 0.5f}) {
+      SurfaceSettings settings;
+      settings.overlap = overlap;
+      const SurfaceResult r = reconstruct(in_basin(points, {0.3f, 0.3f, 0.3f}), settings);
+      const auto t = topology(r.mesh);
+      EXPECT_TRUE(t.closed());
+      EXPECT_EQ(t.components, 1u);
+      EXPECT_EQ(r.small_drops, 1u);
+      EXPECT_NEAR(r.volume / particles_volume(points), 1, 1e-3);
+      float low = 1, high = 0, wide = 0;
+      for (const Vec3f& v : r.mesh.vertices)
+        low = std::min(low, v.y), high = std::max(high, v.y), wide = std::max(wide, std::abs(v.x - points[0].x));
+      EXPECT_NEAR(low, -overlap * kH, 1e-6f) << "it reaches into the floor";
+      const float size = kH * std::cbrt(static_cast<float>(points.size()));
+      EXPECT_LT(high, 0.6f * size) << "a sphere is 1.24 high";
+      EXPECT_GT(wide, 0.9f * size);
+      if (overlap == 0) {
+        double six = 0;
+        for (const auto& [i, j, k] : r.mesh.triangles)
+          six += static_cast<double>(dot(r.mesh.vertices[i], cross(r.mesh.vertices[j], r.mesh.vertices[k])));
+        EXPECT_NEAR(six / 6 / particles_volume(points), 1, 0.01) << "the cap has the volume of its particles";
+      }
+    }
+  }
+}
+
+TEST(Surface, AStillTankHardlyFlickers) {
+  // Particles of a tank at rest move by 0.006 to 0.011 spacings a frame, root mean square; here by 0.02.
+  const Vec3f size{0.3f, 0.3f, 0.25f};
+  auto points = lattice(kH, size, [](const Vec3f& p) { return p.y < 0.12f; });
+  const TriMesh before = reconstruct(in_basin(points, size)).mesh;
+  std::uint64_t n = 0;
+  for (Vec3f& p : points)
+    for (int a = 0; a < 3; ++a) p[a] += 0.02f * kH * (2 * static_cast<float>(uniform(9, n++)) - 1);
+  const TriMesh after = reconstruct(in_basin(points, size)).mesh;
+  double sum = 0;
+  std::size_t count = 0;
+  for (std::size_t v = 0; v < before.vertices.size(); ++v) {
+    const Vec3f& p = before.vertices[v];
+    if (before.normals[v].y < 0.9f || p.y < 0.05f) continue;
+    float nearest = 1, off = 0;
+    for (const Vec3f& q : after.vertices)
+      if (const float d = std::hypot(q.x - p.x, q.z - p.z); d < nearest && q.y > 0.09f)
+        nearest = d, off = dot(before.normals[v], q - p);
+    sum += static_cast<double>(std::abs(off)), ++count;
+  }
+  ASSERT_GT(count, 1000u);
+  EXPECT_LT(sum / static_cast<double>(count), 0.02 * static_cast<double>(kH));
 }
 
 TEST(Surface, AFilmOnTheFloorHasNoHole) {

@@ -46,6 +46,7 @@ struct Surface {
   std::vector<std::string> attributes{"velocity"};  ///< of the vertices; of surface_attributes
   SurfaceType type = SurfaceType::mesh;
   SurfaceFormat format = SurfaceFormat::ply;
+  double overlap = 0.5;  ///< spacings that it reaches into walls and colliders, 0 to 1
   bool operator==(const Surface&) const = default;
 };
 

@@ -8,12 +8,18 @@
 namespace dreampm {
 namespace {
 
-/// Liquid that ends this near to glass touches it, in spacings: particles rest up to half a spacing
-/// before a wall, and their surface ends about as far before them as behind.
-constexpr double wetting_spacings = 1.5;
-
 const model::Look& look_of(const model::Scene& scene, int material) {
   return scene.render.looks.at(scene.materials[static_cast<std::size_t>(material)].name);
+}
+
+/// The panes of a basin have no thickness: matter that reaches into its walls ends at them.
+void end_at_walls(TriMesh& mesh, const RenderScene& scene) {
+  for (Vec3f& v : mesh.vertices)
+    for (int a = 0; a < 3; ++a) {
+      const auto low = static_cast<std::size_t>(2 * a);
+      if (scene.is_wall[low]) v[a] = std::max(v[a], scene.basin.min[a]);
+      if (scene.is_wall[low + 1]) v[a] = std::min(v[a], scene.basin.max[a]);
+    }
 }
 
 }  // namespace
@@ -36,13 +42,16 @@ MaterialParticles particles_of(const model::Scene& scene, int material, const Pa
   return out;
 }
 
-SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift) {
+SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift,
+                           std::vector<WettedSolid> solids) {
   SurfaceInput input;
   input.positions = particles.position;
   input.velocities = particles.velocity;
   input.spacing = static_cast<float>(scene.space.spacing);
   input.walls = {static_cast<Vec3f>(scene.space.min - shift), static_cast<Vec3f>(scene.space.end() - shift)};
   for (std::size_t w = 0; w < 6; ++w) input.is_wall[w] = scene.space.walls[w].type != WallType::open;
+  input.solids = std::move(solids);
+  input.origin = shift;
   return input;
 }
 
@@ -52,6 +61,7 @@ SurfaceSettings surface_settings(const model::Scene& scene) {
   // The scene's bounds, an eighth of the spacing to twice it, are those of a float here.
   settings.voxel = std::clamp(static_cast<float>(scene.surface.voxel * scene.space.dx()), spacing / 8, 2 * spacing);
   settings.smooth = scene.surface.smooth;
+  settings.overlap = static_cast<float>(scene.surface.overlap);
   settings.keep_field = scene.surface.type == model::SurfaceType::fog;
   return settings;
 }
@@ -59,7 +69,6 @@ SurfaceSettings surface_settings(const model::Scene& scene) {
 Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vector<BodyRecord>& bodies,
                    const FrameContent& content, const DrawnColliders& colliders, const RenderSettings& settings) {
   RenderScene out = render_scene(scene, shift);
-  out.wetting = static_cast<float>(wetting_spacings * scene.space.spacing);
   out.objects = colliders.objects;
   // What the picture borrows.
   std::list<TriMesh> meshes;
@@ -86,6 +95,7 @@ Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vec
     }
     TriMesh& mesh = meshes.emplace_back(content.mesh(m));
     if (mesh.triangles.empty()) continue;
+    end_at_walls(mesh, out);
     if (colored)
       colors = vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), mixing_of(look));
     if (cut) cut_mesh(mesh, colors, *cut);

@@ -21,8 +21,9 @@ struct MaterialParticles {
 };
 MaterialParticles particles_of(const model::Scene& scene, int material, const ParticleFrame& frame);
 
-/// What `reconstruct` wraps. `particles` is borrowed.
-SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift);
+/// What `reconstruct` wraps, beside colliders as they stand. `particles` is borrowed.
+SurfaceInput surface_input(const model::Scene& scene, const MaterialParticles& particles, const Vec3d& shift,
+                           std::vector<WettedSolid> solids);
 /// As the scene's section `surface` says.
 SurfaceSettings surface_settings(const model::Scene& scene);
 

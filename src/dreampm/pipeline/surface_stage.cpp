@@ -8,6 +8,7 @@
 #include "dreampm/io/numbered.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pictures/surface_attributes.h"
+#include "dreampm/pictures/wetted_solids.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/surface/vdb.h"
 #include "dreampm/surface/volume_taken.h"
@@ -69,10 +70,11 @@ void keep_volumes(RunFolder& run, const std::vector<int>& frames, const std::vec
   });
 }
 
-void make_surface(RunFolder& run, const ParticleFrame& frame, int material, int number) {
+void make_surface(RunFolder& run, const ParticleFrame& frame, const std::vector<WettedSolid>& solids, int material,
+                  int number) {
   const model::Scene& scene = run.scene;
   const MaterialParticles particles = particles_of(scene, material, frame);
-  const SurfaceInput input = surface_input(scene, particles, frame.shift);
+  const SurfaceInput input = surface_input(scene, particles, frame.shift, solids);
   const SurfaceSettings settings = surface_settings(scene);
   SurfaceResult result = reconstruct(input, settings);
   const VertexAttributes attributes =
@@ -167,9 +169,12 @@ StageResult surface_stage(RunFolder& run, const FrameRange& frames) {
     }
     return files;
   };
+  std::optional<WettedSolids> solids;  // read when the first frame asks for them
   work.make = [&](int f) {
     const ParticleFrame frame = read_particles(run.particles(f));
-    for (const int m : materials) make_surface(run, frame, m, f);
+    if (!solids) solids.emplace(run.scene);
+    const std::vector<WettedSolid> standing = solids->in(run.frame_record(f));
+    for (const int m : materials) make_surface(run, frame, standing, m, f);
   };
   work.leftovers = [&](int f) { return possible_files(run, f); };
   if (work.all_frames) keep_volumes(run, work.frames, materials);

@@ -8,7 +8,6 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
 #include "dreampm/render/intersect_impl.h"
-#include "dreampm/render/wetting.h"
 
 namespace dreampm::trace {
 
@@ -34,12 +33,7 @@ Geometry::Geometry(const RenderScene& scene)
     colors_.push_back(looks_.back()->color());
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
-    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) {
-      if (const std::optional<TriMesh> wet = wetted(scene, o, 2 * epsilon_))
-        add_mesh(*wet, o, index);
-      else
-        add_mesh(**mesh, o, index);
-    }
+    if (const auto* mesh = std::get_if<const TriMesh*>(&o.form)) add_mesh(**mesh, o, index);
     if (const auto* spheres = std::get_if<RenderSpheres>(&o.form)) add_spheres(*spheres, index);
     if (const auto* grains = std::get_if<RenderGrains>(&o.form)) add_grains(*grains, index);
   }

@@ -35,9 +35,9 @@ struct Geometry::Shape {
   std::vector<float> radii{};
   const Vec3f* points = nullptr;                ///< m, of the triangles; Embree has them
   const std::array<float, 4>* balls = nullptr;  ///< m, middles and radii of spheres; Embree has them
-  std::vector<Vec3f> velocities{};           ///< m/s, per sphere, grain or vertex; empty: at rest
-  std::vector<std::vector<Vec3f>> steps{};   ///< m, per step and vertex; or empty
-  std::vector<std::vector<Vec3f>> turned{};  ///< normals per step and vertex; or empty
+  std::vector<Vec3f> velocities{};              ///< m/s, per sphere, grain or vertex; empty: at rest
+  std::vector<std::vector<Vec3f>> steps{};      ///< m, per step and vertex; or empty
+  std::vector<std::vector<Vec3f>> turned{};     ///< normals per step and vertex; or empty
 
   Vec3f color(const Vec3f& of_look, std::size_t primitive, float u, float v) const;
   /// Of a triangle's vertices at a place on it.

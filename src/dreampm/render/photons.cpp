@@ -68,8 +68,8 @@ void PhotonMap::follow(const Geometry& geometry, const Beam& beam, bool on_floor
     for (auto k = static_cast<std::uint32_t>(part); k < static_cast<std::uint32_t>(photons); k += parts) {
       Sampler random(stream_of(seed, pass, k), 0);
       // on a lattice of rank 1 (golden ratio), which a disc winds up to a spiral
-      const Beam::Start start = beam.start((static_cast<float>(k) + 0.5f) / static_cast<float>(photons),
-                                           unit_float(k * 2654435769u), random);
+      const Beam::Start start =
+          beam.start((static_cast<float>(k) + 0.5f) / static_cast<float>(photons), unit_float(k * 2654435769u), random);
       const float time = geometry.moves() ? random.next() : 0.5f;
       follow_photon(geometry, start.origin, start.direction, time, true,
                     [&](const Hit& hit, const Vec3f& p, const Vec3f& d, const Vec3f& weight, bool bent) {

@@ -104,7 +104,6 @@ void check_values(const RenderScene& scene, const RenderSettings& s) {
   in_range("sun strength", scene.light.sun.strength, 0, 1e6);
   if (!scene.light.environment.empty()) in_range("environment strength", scene.light.strength, 1e-6, 1e6);
   in_range("environment turn", scene.light.turn, -3600, 3600);
-  in_range("wetting", scene.wetting, 0, 1e6);
   const Box3f& b = scene.basin;
   if (!is_finite(b.min) || !is_finite(b.max) || !(b.size().x > 0 && b.size().y > 0 && b.size().z > 0))
     fail_input("render: the basin from ({}, {}, {}) to ({}, {}, {}) has no volume; give min below max", b.min.x,

@@ -68,9 +68,6 @@ struct RenderScene {
   model::Camera camera;
   model::Light light;
   model::SceneProps stage;
-  /// m: a clear mesh that ends this near to a clear object of a higher priority is drawn as
-  /// touching it. 0: as it is.
-  float wetting = 0;
   double frame_time = 1.0 / 24;  ///< s, from frame to frame, > 0
   bool physical = false;         ///< leave out what is only look: in-scatter, the softened sun disc, the clamp
 };

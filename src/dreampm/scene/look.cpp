@@ -222,6 +222,8 @@ const Schema<Surface>& surface_schema() {
   static const Schema<Surface> schema{
       number("voxel", &Surface::voxel, between(0.1, 2, "dx")).says("The resolution of the surface."),
       count("smooth", &Surface::smooth, 0, 10).says("Rounds of smoothing."),
+      number("overlap", &Surface::overlap, between(0, 1, "spacings"))
+          .says("How far it reaches into walls and colliders that it touches, so that no film of air is left."),
       words("attributes", &Surface::attributes, model::surface_attributes)
           .says("What the vertices of surfaces hold beside places and normals."),
       choice("type", &Surface::type, {"mesh", "fog", "sdf"})

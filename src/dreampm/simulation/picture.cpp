@@ -1,5 +1,6 @@
 #include "dreampm/base/error.h"
 #include "dreampm/pictures/draw.h"
+#include "dreampm/pictures/wetted_solids.h"
 #include "dreampm/render.h"
 #include "dreampm/render/render.h"
 #include "dreampm/simulation.h"
@@ -38,7 +39,8 @@ RgbImage render(const Simulation& simulation, const PictureOptions& options) {
     content.particles = [&]() -> const ParticleFrame& { return frame; };
     content.mesh = [&](int material) {
       const MaterialParticles particles = particles_of(scene, material, frame);
-      return reconstruct(surface_input(scene, particles, frame.shift), surface_settings(scene)).mesh;
+      auto solids = wetted_solids(engine.world().colliders);
+      return reconstruct(surface_input(scene, particles, frame.shift, std::move(solids)), surface_settings(scene)).mesh;
     };
     const DrawnColliders colliders = models.at(poses, now.time, models.motion_about(now, nullptr, &after, open));
     return tone_map(draw_frame(scene, frame.shift, bodies, content, colliders, settings));

@@ -13,6 +13,7 @@
 #include "dreampm/math/look_color.h"
 #include "dreampm/pictures/draw.h"
 #include "dreampm/pictures/frames.h"
+#include "dreampm/pictures/wetted_solids.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/simulation/simulation_impl.h"
 #include "dreampm/solver/choose_dt.h"
@@ -351,8 +352,11 @@ TriMesh Simulation::surface(std::string_view material, const SurfaceOptions& opt
   settings.keep_field = false;
   settings.voxel = static_cast<float>(options.voxel * description.space.dx());
   settings.smooth = options.smooth;
-  TriMesh mesh = impl_->with_engine(
-      [&](auto&) { return reconstruct(surface_input(description, particles, frame.shift), settings).mesh; });
+  settings.overlap = static_cast<float>(options.overlap);
+  TriMesh mesh = impl_->with_engine([&](const auto& engine) {
+    auto solids = wetted_solids(engine.world().colliders);
+    return reconstruct(surface_input(description, particles, frame.shift, std::move(solids)), settings).mesh;
+  });
   for (Vec3f& v : mesh.vertices) v += static_cast<Vec3f>(frame.shift);
   return mesh;
 }

@@ -11,7 +11,7 @@ namespace {
 
 /// The outward normal of the wall, if the vertex lies on one wall and on nothing else.
 std::optional<Vec3f> wall_normal(const QuadMesh& quads, std::size_t v) {
-  if (!quads.pure_wall(v)) return std::nullopt;
+  if (!quads.pure_wall(v) || (quads.touches[v] & QuadMesh::kSolid) != 0) return std::nullopt;
   std::optional<Vec3f> normal;
   for (int s = 0; s < 6; ++s) {
     if ((quads.touches[v] >> s & 1) == 0) continue;
@@ -22,9 +22,10 @@ std::optional<Vec3f> wall_normal(const QuadMesh& quads, std::size_t v) {
   return normal;
 }
 
-/// A face lies in a wall if all its corners touch one.
+/// A face lies in a wall or a solid if all its corners touch one.
 bool in_wall(const QuadMesh& quads, const std::array<std::uint32_t, 4>& q) {
-  return (quads.touches[q[0]] & quads.touches[q[1]] & quads.touches[q[2]] & quads.touches[q[3]] & 63) != 0;
+  return (quads.touches[q[0]] & quads.touches[q[1]] & quads.touches[q[2]] & quads.touches[q[3]] & ~QuadMesh::kFree) !=
+         0;
 }
 
 }  // namespace

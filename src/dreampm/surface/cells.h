@@ -31,6 +31,24 @@ void for_cells(const CellGrid& grid, const Vec3f& lo, const Vec3f& hi, const Vis
           visit(static_cast<std::size_t>(c));
 }
 
+/// Calls visit(first, end) for the occupied cells first .. end - 1 of each row along x of the box
+/// from cell `lo` to cell `hi`, in order z, y: what they hold lies together in `order`.
+template <class Visit>
+void for_rows(const CellGrid& grid, const Vec3i& lo, const Vec3i& hi, const Visit& visit) {
+  for (int z = lo.z; z <= hi.z; ++z)
+    for (int y = lo.y; y <= hi.y; ++y)
+      for (int x = lo.x; x <= hi.x; ++x) {
+        const std::int32_t c = grid.index.find({x, y, z});
+        if (c == LatticeMap::kAbsent) continue;
+        const auto begin = static_cast<std::size_t>(c);
+        std::size_t end = begin + 1;
+        while (end < grid.cells.size() && grid.cells[end].z == z && grid.cells[end].y == y && grid.cells[end].x <= hi.x)
+          ++end;
+        visit(begin, end);
+        break;
+      }
+}
+
 /// Per cell: does every cell within +-2 of it hold at least two points? Liquid there is far from
 /// any surface.
 std::vector<std::uint8_t> deep_cells(const CellGrid& grid);

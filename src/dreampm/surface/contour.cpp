@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <optional>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -33,7 +34,7 @@ struct CellLeaf {
 
 class Contourer {
  public:
-  Contourer(SparseField& field, const Walls& walls) : field_(field), walls_(walls), value_(field.leaves.size()) {
+  Contourer(SparseField& field, const Bounds& bounds) : field_(field), bounds_(bounds), value_(field.leaves.size()) {
     for (std::size_t i = 0; i < field.leaves.size(); ++i) value_.insert(field.leaves[i], static_cast<std::int32_t>(i));
     inside_ = LatticeMap(field.inside.size());
     for (std::size_t i = 0; i < field.inside.size(); ++i) inside_.insert(field.inside[i], 0);
@@ -155,6 +156,7 @@ class Contourer {
     if (n > 0xffffffffull) fail_run("the surface would have {} vertices, over 2^32: use a larger voxel", n);
     mesh.vertices.resize(n);
     mesh.touches.assign(n, 0);
+    if (!bounds_.band.empty()) mesh.solid_normals.assign(n, Vec3f{});
   }
 
   void place_vertices(const CellLeaf& leaf, QuadMesh& mesh) const {
@@ -178,23 +180,34 @@ class Contourer {
         const Vec3f end = field_.point(p + to);
         std::uint8_t& touches = mesh.touches[leaf.vertex[i] + static_cast<std::uint32_t>(patch)];
         const int wall = wall_crossed(a, x, end, f0 > f1);
+        const std::optional<float> solid = solid_crossed(p + from, p + to, f0 > f1);
         if (wall >= 0) {
-          x[a] = walls_.place(wall);
+          x[a] = bounds_.walls.place(wall);
           touches = static_cast<std::uint8_t>(touches | 1u << wall);
+        } else if (solid) {
+          x[a] += (end[a] - x[a]) * *solid;
+          touches |= QuadMesh::kSolid;
         } else {
           x[a] += (end[a] - x[a]) * std::clamp((field_.iso - f0) / (f1 - f0), 0.0f, 1.0f);
           touches |= QuadMesh::kFree;
         }
         // The height of a vertex where the surface meets a wall comes from the free edges alone:
         // wall edges would pull the line down in steps.
-        auto& part = wall >= 0 ? on_wall[static_cast<std::size_t>(patch)] : free[static_cast<std::size_t>(patch)];
+        auto& part =
+            wall >= 0 || solid ? on_wall[static_cast<std::size_t>(patch)] : free[static_cast<std::size_t>(patch)];
         part.sum += x, part.count += 1;
       }
       for (std::size_t k = 0; k < entry.patches; ++k) {
         const Mean& mean = free[k].count > 0 ? free[k] : on_wall[k];
-        Vec3f x = walls_.inside(mean.sum / mean.count);
+        const std::uint8_t touches = mesh.touches[leaf.vertex[i] + k];
+        Vec3f x = mean.sum / mean.count;
+        if (touches & QuadMesh::kSolid) {
+          x = bounds_.solids.projected(x, 0);
+          mesh.solid_normals[leaf.vertex[i] + k] = bounds_.solids.normal(x);
+        }
+        x = bounds_.walls.inside(x);
         for (int s = 0; s < 6; ++s)
-          if (mesh.touches[leaf.vertex[i] + k] >> s & 1) x[s / 2] = walls_.place(s);
+          if (touches >> s & 1) x[s / 2] = bounds_.walls.place(s);
         mesh.vertices[leaf.vertex[i] + k] = x;
       }
     }
@@ -205,8 +218,20 @@ class Contourer {
   int wall_crossed(int axis, const Vec3f& from, const Vec3f& to, bool from_inside) const {
     const Vec3f& outer = from_inside ? to : from;
     for (int s = 2 * axis; s < 2 * axis + 2; ++s)
-      if (walls_.closed[static_cast<std::size_t>(s)] && walls_.distance(s, outer) <= 0) return s;
+      if (bounds_.walls.closed[static_cast<std::size_t>(s)] && bounds_.walls.distance(s, outer) <= 0) return s;
     return -1;
+  }
+  /// Where an edge enters a solid, 0 at `from` to 1 at `to`, if its end outside of the liquid lies
+  /// in one.
+  std::optional<float> solid_crossed(const Vec3i& from, const Vec3i& to, bool from_inside) const {
+    if (bounds_.band.empty()) return std::nullopt;
+    const float d0 = solid_distance(from), d1 = solid_distance(to);
+    if ((from_inside ? d1 : d0) > 0) return std::nullopt;
+    return d0 == d1 ? 0.5f : std::clamp(d0 / (d0 - d1), 0.0f, 1.0f);
+  }
+  float solid_distance(const Vec3i& p) const {
+    const std::int32_t l = value_.find(leaf_of(p));
+    return l == LatticeMap::kAbsent ? 1e30f : bounds_.band.distance(static_cast<std::size_t>(l), local(p));
   }
 
   void make_quads(QuadMesh& mesh) const {
@@ -244,13 +269,13 @@ class Contourer {
   }
 
   SparseField& field_;
-  const Walls& walls_;
+  const Bounds& bounds_;
   LatticeMap value_, inside_, cell_index_;
   std::vector<CellLeaf> cells_;
 };
 
 }  // namespace
 
-QuadMesh contour(SparseField& field, const Walls& walls) { return Contourer(field, walls).run(); }
+QuadMesh contour(SparseField& field, const Bounds& bounds) { return Contourer(field, bounds).run(); }
 
 }  // namespace dreampm::surface

@@ -40,19 +40,19 @@ std::vector<Size> measure(const QuadMesh& mesh, const Bodies& bodies) {
 
 }  // namespace
 
-std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
-                                     std::span<const Vec3f> velocities, float spacing) {
+std::vector<SmallDrop> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
+                                        std::span<const Vec3f> velocities, float spacing) {
   constexpr std::uint32_t kAnyShape = 3, kMost = 8;
   constexpr double kCompact = 2;  // of the sphere's radius
   const std::vector<Size> sizes = measure(mesh, bodies);
   std::vector<std::uint8_t> taken(bodies.count, 0);
-  std::vector<Sphere> spheres(bodies.count);
+  std::vector<SmallDrop> drops(bodies.count);
   for (std::size_t b = 0; b < bodies.count; ++b) {
     const std::uint32_t n = bodies.particles[b];
     const double radius = static_cast<double>(spacing) * std::cbrt(n * kSphere);
-    taken[b] = n == 0 || (!bodies.on_wall[b] && (n <= kAnyShape || (n <= kMost && sizes[b].reach < kCompact * radius)));
+    taken[b] = n <= kAnyShape || (n <= kMost && sizes[b].reach < kCompact * radius);
   }
-  std::vector<Sphere> alone;
+  std::vector<SmallDrop> alone;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3f velocity = velocities.empty() ? Vec3f{} : velocities[i];
     if (bodies.of_particle[i] == Bodies::kNone) {
@@ -61,9 +61,9 @@ std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<c
     }
     const auto b = static_cast<std::size_t>(bodies.of_particle[i]);
     if (!taken[b]) continue;
-    spheres[b].center += points[i], spheres[b].velocity += velocity, ++spheres[b].particles;
+    drops[b].center += points[i], drops[b].velocity += velocity, ++drops[b].particles;
   }
-  for (Sphere& s : spheres) {
+  for (SmallDrop& s : drops) {
     if (s.particles == 0) continue;
     const auto n = static_cast<float>(s.particles);
     alone.push_back({s.center / n, s.velocity / n, s.particles});
@@ -77,6 +77,7 @@ std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<c
     to[v] = left;
     mesh.vertices[left] = mesh.vertices[v];
     mesh.touches[left] = mesh.touches[v];
+    if (!mesh.solid_normals.empty()) mesh.solid_normals[left] = mesh.solid_normals[v];
     bodies.of_vertex[left++] = bodies.of_vertex[v];
   }
   std::size_t kept = 0;
@@ -85,6 +86,7 @@ std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<c
     for (std::size_t k = 0; k < 4; ++k) mesh.quads[kept][k] = to[mesh.quads[q][k]];
     mesh.inner[kept++] = mesh.inner[q];
   }
+  if (!mesh.solid_normals.empty()) mesh.solid_normals.resize(left);
   mesh.vertices.resize(left), mesh.touches.resize(left), bodies.of_vertex.resize(left);
   mesh.quads.resize(kept), mesh.inner.resize(kept);
   return alone;
@@ -126,74 +128,6 @@ void restore_volumes(QuadMesh& mesh, const Bodies& bodies, float spacing) {
         mesh.vertices[v] += normalized(normal[v]) * static_cast<float>(move);
       }
     }
-  }
-}
-
-namespace {
-
-/// An icosahedron, each face split in four `levels` times, of volume 1.
-TriMesh unit_sphere(int levels) {
-  const float g = (1 + std::sqrt(5.0f)) / 2;
-  TriMesh s;
-  // Corners of three golden rectangles: (0, +-1, +-g) and its cyclic turns.
-  for (int a = 0; a < 3; ++a)
-    for (int k = 0; k < 4; ++k) {
-      Vec3f p;
-      p[(a + 1) % 3] = k & 1 ? 1.0f : -1.0f;
-      p[(a + 2) % 3] = k & 2 ? g : -g;
-      s.vertices.push_back(normalized(p));
-    }
-  // Faces: three corners at one edge length of each other, turned outwards.
-  const float edge2 = 1.01f * length2(s.vertices[0] - s.vertices[1]);
-  const auto near = [&](std::uint32_t i, std::uint32_t j) { return length2(s.vertices[i] - s.vertices[j]) < edge2; };
-  for (std::uint32_t i = 0; i < 12; ++i)
-    for (std::uint32_t j = i + 1; j < 12; ++j)
-      for (std::uint32_t k = j + 1; k < 12; ++k) {
-        if (!near(i, j) || !near(j, k) || !near(i, k)) continue;
-        const bool outward = dot(s.vertices[i], cross(s.vertices[j], s.vertices[k])) > 0;
-        s.triangles.push_back(outward ? std::array{i, j, k} : std::array{i, k, j});
-      }
-  for (int level = 0; level < levels; ++level) {
-    std::vector<std::array<std::uint32_t, 3>> middles;  // edge from, to, vertex
-    const auto middle = [&](std::uint32_t i, std::uint32_t j) {
-      for (const auto& m : middles)
-        if (m[0] == std::min(i, j) && m[1] == std::max(i, j)) return m[2];
-      const auto v = static_cast<std::uint32_t>(s.vertices.size());
-      s.vertices.push_back(normalized(s.vertices[i] + s.vertices[j]));
-      middles.push_back({std::min(i, j), std::max(i, j), v});
-      return v;
-    };
-    const auto faces = std::exchange(s.triangles, {});
-    for (const auto& f : faces) {
-      const std::uint32_t a = middle(f[0], f[1]), b = middle(f[1], f[2]), c = middle(f[2], f[0]);
-      s.triangles.insert(s.triangles.end(), {{f[0], a, c}, {f[1], b, a}, {f[2], c, b}, {a, b, c}});
-    }
-  }
-  s.normals = s.vertices;
-  float six = 0;
-  for (const auto& t : s.triangles) six += dot(s.vertices[t[0]], cross(s.vertices[t[1]], s.vertices[t[2]]));
-  for (Vec3f& v : s.vertices) v = v / std::cbrt(six / 6);
-  return s;
-}
-
-}  // namespace
-
-void add_spheres(TriMesh& mesh, std::span<const Sphere> spheres, const Walls& walls, float spacing) {
-  if (spheres.empty()) return;
-  const TriMesh coarse = unit_sphere(1), fine = unit_sphere(2);
-  const bool moving = mesh.velocities.size() == mesh.vertices.size();
-  for (const Sphere& s : spheres) {
-    const TriMesh& shape = s.particles < 3 ? coarse : fine;
-    const float size = spacing * std::cbrt(static_cast<float>(s.particles)), radius = size * length(shape.vertices[0]);
-    Vec3f c = s.center;
-    for (int side = 0; side < 6; ++side)
-      if (walls.closed[static_cast<std::size_t>(side)] && walls.distance(side, c) < radius)
-        c[side / 2] = walls.place(side) + (side % 2 == 0 ? radius : -radius);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Vec3f& v : shape.vertices) mesh.vertices.push_back(walls.inside(c + v * size));
-    mesh.normals.insert(mesh.normals.end(), shape.normals.begin(), shape.normals.end());
-    if (moving) mesh.velocities.insert(mesh.velocities.end(), shape.vertices.size(), s.velocity);
-    for (const auto& t : shape.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   }
 }
 

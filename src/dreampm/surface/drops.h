@@ -1,5 +1,5 @@
-// Stage 7: bodies that touch no wall get the volume of their particles; lone particles become
-// spheres.
+// Stage 7: bodies that touch no wall get the volume of their particles; the smallest are taken out,
+// to be given shapes of their own.
 #pragma once
 #include <algorithm>
 #include <span>
@@ -25,20 +25,16 @@ inline float smoothing_share(std::uint32_t particles) {
 void restore_volumes(QuadMesh& mesh, const Bodies& bodies, float spacing);
 
 /// A drop too small for the grid.
-struct Sphere {
+struct SmallDrop {
   Vec3f center{};               ///< m
   Vec3f velocity{};             ///< m/s
   std::uint32_t particles = 0;  ///< its volume in spacing^3
 };
 
-/// Takes out of the mesh: free bodies of at most 3 particles, compact free bodies of at most 8, and
-/// bodies that hold no particle at all. Returns the drops as spheres, and one for each particle
-/// that no body holds. `velocities`: one a particle, or empty.
-std::vector<Sphere> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
-                                     std::span<const Vec3f> velocities, float spacing);
-
-/// Adds the spheres to the mesh, moved off the walls so that they fit; velocities only if the mesh
-/// has.
-void add_spheres(TriMesh& mesh, std::span<const Sphere> spheres, const Walls& walls, float spacing);
+/// Takes out of the mesh: bodies of at most 3 particles, compact bodies of at most 8, and bodies
+/// that hold no particle at all. Returns them, and one drop for each particle that no body holds.
+/// `velocities`: one a particle, or empty.
+std::vector<SmallDrop> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
+                                        std::span<const Vec3f> velocities, float spacing);
 
 }  // namespace dreampm::surface

@@ -1,6 +1,8 @@
 #include "dreampm/surface/field.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/wide.h"
@@ -13,8 +15,9 @@ constexpr int kW = SparseField::kWidth;
 /// The plan of leaves: where they are needed, and which of them lie wholly inside.
 class LeafPlan {
  public:
-  LeafPlan(const CellGrid& grid, const std::vector<std::uint8_t>& deep, const Walls& walls, const FieldSettings& s)
-      : grid_(grid), deep_(deep), walls_(walls), voxel_(s.voxel), width_(kW * s.voxel) {
+  LeafPlan(const CellGrid& grid, const std::vector<std::uint8_t>& deep, const Walls& walls, const Solids& solids,
+           const FieldSettings& s)
+      : grid_(grid), deep_(deep), walls_(walls), solids_(solids), voxel_(s.voxel), width_(kW * s.voxel) {
     std::vector<std::uint64_t> keys;
     LatticeMap seen(grid.cells.size());
     for (std::size_t c = 0; c < grid.cells.size(); ++c) {
@@ -64,11 +67,12 @@ class LeafPlan {
           const std::int32_t c = grid_.index.find({x, y, z});
           if (c == LatticeMap::kAbsent || !deep_[static_cast<std::size_t>(c)]) return false;
         }
-    return true;
+    return solids_.clear_of(b);
   }
   const CellGrid& grid_;
   const std::vector<std::uint8_t>& deep_;
   const Walls& walls_;
+  const Solids& solids_;
   float voxel_, width_;
 };
 
@@ -85,6 +89,26 @@ Blob blob_of(const Kernel& k) {
   return {k, {std::sqrt(c(0, 0) * per), std::sqrt(c(1, 1) * per), std::sqrt(c(2, 2) * per)}};
 }
 
+/// Along the rows of a plane of a leaf q^2 = a + b i + c i^2: a, b and whether the row misses the
+/// ellipsoid, row by row.
+struct Rows {
+  float a[kW], b[kW];
+  std::int32_t miss[kW];
+};
+
+/// The rows of the plane `z` [m] off a kernel's center, whose first points lie at x and y [m] of
+/// it.
+[[gnu::always_inline]] inline void find_rows(const Sym3<float>& form, float x, const Wide& y, float z, float voxel,
+                                             Rows& rows) {
+  const Wide fx = form.xx * x + form.xy * y + form.xz * z, fy = form.xy * x + form.yy * y + form.yz * z,
+             fz = form.xz * x + form.yz * y + form.zz * z;
+  const Wide a = x * fx + y * fy + z * fz, b = 2 * voxel * fx;
+  const auto miss = (a - 1) * 4 * (voxel * voxel * form.xx) >= b * b;
+  store(a, rows.a), store(b, rows.b);
+  static_assert(sizeof miss == sizeof rows.miss);
+  std::memcpy(rows.miss, &miss, sizeof miss);
+}
+
 /// Adds kernels to the 8^3 values of the leaf whose first point is `corner`.
 DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, float voxel, float* values) {
   static_assert(kW == kLanes);
@@ -92,37 +116,39 @@ DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, 
   const float last = voxel * (kW - 1), per_voxel = 1 / voxel;
   for (const Blob* blob = begin; blob != end; ++blob) {
     const Kernel& k = blob->kernel;
-    const Vec3f d = corner - k.center;
-    if (d.x > blob->half.x || d.x + last < -blob->half.x) continue;
-    const int y0 = std::max(0, static_cast<int>(std::ceil((-blob->half.y - d.y) * per_voxel)));
-    const int y1 = std::min(kW - 1, static_cast<int>(std::floor((blob->half.y - d.y) * per_voxel)));
-    const int z0 = std::max(0, static_cast<int>(std::ceil((-blob->half.z - d.z) * per_voxel)));
-    const int z1 = std::min(kW - 1, static_cast<int>(std::floor((blob->half.z - d.z) * per_voxel)));
+    const Vec3f d = corner - k.center, &half = blob->half;
+    if (d.x > half.x || d.x + last < -half.x || d.y > half.y || d.y + last < -half.y || d.z > half.z ||
+        d.z + last < -half.z)
+      continue;
+    const int y0 = std::max(0, static_cast<int>(std::ceil((-half.y - d.y) * per_voxel)));
+    const int y1 = std::min(kW - 1, static_cast<int>(std::floor((half.y - d.y) * per_voxel)));
+    const int z0 = std::max(0, static_cast<int>(std::ceil((-half.z - d.z) * per_voxel)));
+    const int z1 = std::min(kW - 1, static_cast<int>(std::floor((half.z - d.z) * per_voxel)));
+    const Wide y_of = d.y + voxel * steps;
     const float c = voxel * voxel * k.form.xx, amount = k.amount;
-    for (int z = z0; z <= z1; ++z)
+    Rows rows;
+    for (int z = z0; z <= z1; ++z) {
+      find_rows(k.form, d.x, y_of, d.z + voxel * static_cast<float>(z), voxel, rows);
       for (int y = y0; y <= y1; ++y) {
-        // Along a row q^2 = a + b i + c i^2.
-        const Vec3f p{d.x, d.y + voxel * static_cast<float>(y), d.z + voxel * static_cast<float>(z)};
-        const Vec3f fp = k.form * p;
-        const float a = dot(p, fp), b = 2 * voxel * fp.x;
-        if ((a - 1) * 4 * c >= b * b) continue;  // the line misses the ellipsoid
+        if (rows.miss[y]) continue;
         float* row = values + (z * kW + y) * kW;
-        Wide sum, t = 1 - (a + steps * (b + c * steps));
+        Wide sum, t = 1 - (rows.a[y] + steps * (rows.b[y] + c * steps));
         t = t > 0 ? t : Wide{};
         load(row, sum);
         sum += amount * t * t * t;
         store(sum, row);
       }
+    }
   }
 }
 
 }  // namespace
 
 SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid, const std::vector<std::uint8_t>& deep,
-                       const Walls& walls, const FieldSettings& s) {
+                       const Walls& walls, const Solids& solids, const FieldSettings& s) {
   SparseField field;
   field.voxel = s.voxel;
-  LeafPlan plan(grid, deep, walls, s);
+  LeafPlan plan(grid, deep, walls, solids, s);
   field.leaves = std::move(plan.stored_);
   field.inside = std::move(plan.inside_);
   field.values.assign(field.leaves.size() * SparseField::kPoints, 0.0f);
@@ -133,8 +159,9 @@ SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid,
     float* values = field.leaf(l).data();
     const Vec3f corner = Vec3f(field.leaves[l]) * width;
     const Vec3f margin{s.support, s.support, s.support}, edge{width, width, width};
-    for_cells(grid, corner - margin, corner + edge + margin, [&](std::size_t cell) {
-      add_blobs(blobs.data() + grid.first[cell], blobs.data() + grid.first[cell + 1], corner, s.voxel, values);
+    const Vec3i low = lattice_cell(corner - margin, grid.size), high = lattice_cell(corner + edge + margin, grid.size);
+    for_rows(grid, low, high, [&](std::size_t cell, std::size_t end_cell) {
+      add_blobs(blobs.data() + grid.first[cell], blobs.data() + grid.first[end_cell], corner, s.voxel, values);
     });
     if (std::min(walls.distance(corner), walls.distance(corner + edge)) > 8 * s.spacing) return;
     for (int i = 0; i < SparseField::kPoints; ++i) {

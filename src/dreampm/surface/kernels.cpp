@@ -37,11 +37,12 @@ DM_WIDE Shift shift_of(const Kernel& k, const Neighborhood& near) {
 void correct_amounts(std::vector<Kernel>& kernels, std::size_t real, const CellGrid& grid,
                      const std::vector<std::uint8_t>& deep) {
   constexpr float kLeast = 0.4f, kMost = 1.6f, kSparse = 0.9f;
+  const SortedPlaces places(grid, [&](std::uint32_t i) -> const Vec3f& { return kernels[i].center; });
   parallel_ranges(grid.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
     Neighborhood near;
     for (std::size_t c = begin; c < end; ++c) {
       if (deep[c]) continue;
-      near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return kernels[grid.order[k]].center; });
+      near.gather(grid, places, grid.cells[c], 2);
       for (std::uint32_t i = grid.first[c]; i < grid.first[c + 1]; ++i) {
         Kernel& k = kernels[grid.order[i]];
         if (grid.order[i] >= real || is_single(k)) continue;

@@ -83,11 +83,11 @@ bool is_alone(const Moments& m, const Vec3f& p, const Mirrored& points, const Ce
   constexpr float kAlone = 0.30f, kMostImages = 8;
   if (m.sum > kMostImages + kAlone) return false;
   float sum = -1;  // less the point itself
-  for (std::size_t i = 0; i < near.x.size(); ++i) {
-    if (grid.order[near.who[i]] >= points.real) continue;
+  near.for_each([&](std::size_t i, std::size_t k) {
+    if (grid.order[k] >= points.real) return;
     const float t = 1 - length2(Vec3f{near.x[i], near.y[i], near.z[i]} - p) / (support * support);
     if (t > 0) sum += t * t * t;
-  }
+  });
   return sum < kAlone;
 }
 
@@ -100,10 +100,11 @@ std::vector<Kernel> fit_kernels(const Mirrored& points, const CellGrid& grid, co
   round.form = Sym3<float>::isotropic(1 / (s.support * s.support));
   round.amount = ratio * ratio * ratio / kKernelIntegral;
   std::vector<Kernel> kernels(points.points.size(), round);
+  const SortedPlaces places(grid, [&](std::uint32_t i) -> const Vec3f& { return points.points[i]; });
   parallel_ranges(grid.cells.size(), 16, [&](std::size_t begin, std::size_t end) {
     Neighborhood near;
     for (std::size_t c = begin; c < end; ++c) {
-      if (!deep[c]) near.gather(grid, grid.cells[c], 2, [&](std::uint32_t k) { return points.points[grid.order[k]]; });
+      if (!deep[c]) near.gather(grid, places, grid.cells[c], 2);
       for (std::uint32_t i = grid.first[c]; i < grid.first[c + 1]; ++i) {
         const std::size_t p = grid.order[i];
         Kernel& k = kernels[p];

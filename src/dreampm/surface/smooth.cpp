@@ -32,37 +32,52 @@ Links make_links(const QuadMesh& mesh) {
   return links;
 }
 
+/// A move of a vertex without what leads off its walls and its solid.
+Vec3f kept_on(const QuadMesh& mesh, std::size_t v, Vec3f move) {
+  const std::uint8_t touches = mesh.touches[v];
+  if (touches & QuadMesh::kSolid) move -= mesh.solid_normals[v] * dot(mesh.solid_normals[v], move);
+  if (touches & 3) move.x = 0;
+  if (touches & 12) move.y = 0;
+  if (touches & 48) move.z = 0;
+  return move;
+}
+
+/// x, y, z and nothing, in one register.
+using Lane4 [[gnu::vector_size(16)]] = float;
+
 class Smoother {
  public:
   Smoother(const QuadMesh& mesh, std::span<const float> bear) : mesh_(mesh), bear_(bear), links_(make_links(mesh)) {}
 
   /// S: `steps` steps towards the mean of the neighbors.
   void apply(std::vector<Vec3f>& x, int steps) {
-    next_.resize(x.size());
+    now_.resize(x.size()), next_.resize(x.size());
+    parallel_for(x.size(), 8192, [&](std::size_t v) { now_[v] = Lane4{x[v].x, x[v].y, x[v].z, 0}; });
     for (int s = 0; s < steps; ++s) {
-      parallel_for(x.size(), 4096, [&](std::size_t v) { next_[v] = stepped(x, v); });
-      x.swap(next_);
+      parallel_for(x.size(), 4096, [&](std::size_t v) { next_[v] = stepped(v); });
+      now_.swap(next_);
     }
+    parallel_for(x.size(), 8192, [&](std::size_t v) { x[v] = {now_[v][0], now_[v][1], now_[v][2]}; });
   }
 
  private:
-  Vec3f stepped(const std::vector<Vec3f>& x, std::size_t v) const {
+  Lane4 stepped(std::size_t v) const {
     constexpr float kStep = 0.85f;
     const std::uint32_t begin = links_.first[v], end = links_.first[v + 1];
-    if (begin == end) return x[v];
-    Vec3f sum{};
-    for (std::uint32_t k = begin; k < end; ++k) sum += x[links_.to[k]];
-    Vec3f move = (sum / static_cast<float>(end - begin) - x[v]) * (kStep * bear_[v]);
-    const std::uint8_t walls = mesh_.touches[v];
-    if (walls & 3) move.x = 0;
-    if (walls & 12) move.y = 0;
-    if (walls & 48) move.z = 0;
-    return x[v] + move;
+    const std::uint8_t touches = mesh_.touches[v];
+    const Lane4 x = now_[v];
+    if (begin == end || ((touches & QuadMesh::kSolid) && mesh_.pure_wall(v))) return x;
+    Lane4 sum{};
+    for (std::uint32_t k = begin; k < end; ++k) sum += now_[links_.to[k]];
+    const Lane4 move = (sum / static_cast<float>(end - begin) - x) * (kStep * bear_[v]);
+    if ((touches & ~QuadMesh::kFree) == 0) return x + move;
+    const Vec3f kept = kept_on(mesh_, v, {move[0], move[1], move[2]});
+    return x + Lane4{kept.x, kept.y, kept.z, 0};
   }
   const QuadMesh& mesh_;
   std::span<const float> bear_;
   Links links_;
-  std::vector<Vec3f> next_;
+  std::vector<Lane4> now_, next_;
 };
 
 }  // namespace
@@ -75,11 +90,7 @@ void smooth(QuadMesh& mesh, std::span<const float> bear, const SmoothSettings& s
   parallel_for(p.size(), 8192, [&](std::size_t v) { rest[v] = mesh.vertices[v] - p[v]; });
   smoother.apply(rest, s.steps);
   parallel_for(p.size(), 8192, [&](std::size_t v) {
-    Vec3f move = p[v] + rest[v] - mesh.vertices[v];
-    const std::uint8_t walls = mesh.touches[v];  // p + rest may differ from x in the last bit
-    if (walls & 3) move.x = 0;
-    if (walls & 12) move.y = 0;
-    if (walls & 48) move.z = 0;
+    const Vec3f move = kept_on(mesh, v, p[v] + rest[v] - mesh.vertices[v]);  // p + rest may differ in the last bit
     const float l = length(move);
     mesh.vertices[v] += l > s.largest ? move * (s.largest / l) : move;
   });

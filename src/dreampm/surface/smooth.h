@@ -12,8 +12,8 @@ struct SmoothSettings {
 };
 
 /// Twicing (Tukey): p = S x, x' = p + S (x - p), where S is `steps` Laplacian steps; `bear` is how
-/// much of each step a vertex takes, 0..1. Vertices stay on their walls; where the free surface
-/// meets a wall they follow the free surface.
+/// much of each step a vertex takes, 0..1. Vertices stay on their walls, and those on
+/// solids where they are; where the free surface meets one they follow the free surface.
 void smooth(QuadMesh& mesh, std::span<const float> bear, const SmoothSettings& settings);
 
 }  // namespace dreampm::surface

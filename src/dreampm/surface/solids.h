@@ -1,0 +1,84 @@
+// Colliders that the liquid wets: where the surface of the particles ends at them, and how it is
+// brought there.
+#pragma once
+#include <array>
+#include <span>
+#include <vector>
+
+#include "dreampm/surface/sparse_field.h"
+#include "dreampm/surface/surface.h"
+#include "dreampm/surface/walls.h"
+
+namespace dreampm::surface {
+
+/// Solids as seen from the positions of the particles, which count from `origin` in the axes of the
+/// solids. Distances are those to the nearest solid, negative inside, exact within `reach` [m] and
+/// at most that beyond.
+class Solids {
+ public:
+  Solids() = default;
+  Solids(std::span<const WettedSolid> solids, const Vec3d& origin, float reach);
+
+  bool empty() const { return solids_.empty(); }
+  float reach() const { return reach_; }
+  float distance(const Vec3f& p) const;
+  /// The direction away from the nearest solid, of length 1; 0 where no distance changes.
+  Vec3f normal(const Vec3f& p) const;
+  /// Distances at count^3 points of a lattice, x fastest.
+  void distances(const Vec3f& first, float step, int count, float* to) const;
+  /// False where all of a box is farther than `reach` from the bounds of every solid.
+  bool near(const Box3f& box) const;
+  /// True where no solid reaches into the box.
+  bool clear_of(const Box3f& box) const;
+  /// The point of the surface nearest to p, where p lies near it: at distance `off` [m] of it.
+  Vec3f projected(Vec3f p, float off) const;
+  /// The depth [m] at the point p of the surface that a mesh may reach down to, going against the
+  /// normal n: `wanted`, less where the solid is thin.
+  float depth(const Vec3f& p, const Vec3f& n, float wanted) const;
+
+ private:
+  struct Solid {
+    WettedSolid of;
+    Box3d bounds;  ///< m, as it stands
+  };
+  /// The gradient of the distance.
+  Vec3f slope(const Vec3f& p) const;
+  Box3d standing_bounds(const WettedSolid& solid) const;
+
+  std::vector<Solid> solids_;
+  Vec3d origin_;
+  float reach_ = 0, step_ = 0;
+};
+
+/// Distances to solids at the points of a field's leaves.
+class SolidBand {
+ public:
+  SolidBand() = default;
+  SolidBand(const SparseField& field, const Solids& solids);
+
+  bool empty() const { return values_.empty(); }
+  /// Values of a block of 10^3 points: those of a leaf, and one more on each side. Null where no
+  /// solid is within reach of the leaf.
+  static constexpr int kBlock = SparseField::kWidth + 2;
+  const float* block(std::size_t leaf) const { return slot_[leaf] < 0 ? nullptr : at(slot_[leaf]); }
+  /// The value at a point of a leaf; far outside where there is none.
+  float distance(std::size_t leaf, const Vec3i& local) const {
+    const float* const b = empty() ? nullptr : block(leaf);
+    return b == nullptr ? 1e30f : b[((local.z + 1) * kBlock + local.y + 1) * kBlock + local.x + 1];
+  }
+
+ private:
+  static constexpr std::size_t kValues = std::size_t{kBlock} * kBlock * kBlock;
+  const float* at(std::int32_t slot) const { return values_.data() + static_cast<std::size_t>(slot) * kValues; }
+
+  std::vector<std::int32_t> slot_;
+  std::vector<float> values_;
+};
+
+/// Makes the field at a solid what it would be if the solid were more of the liquid beside it: a
+/// point gets what its mirror image in the solid's surface has too, as flat walls give it; and
+/// where that falls short, in corners, its own value over the share of a kernel there that no solid
+/// takes. Inside of solids the field ends as beyond walls.
+void fill_solids(SparseField& field, const SolidBand& band, const Solids& solids, float spacing);
+
+}  // namespace dreampm::surface
