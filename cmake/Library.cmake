@@ -17,7 +17,7 @@ foreach(isa ${DM_ISAS})
   list(APPEND objects $<TARGET_OBJECTS:dm_kernels_${isa}> $<TARGET_OBJECTS:dm_projection_kernels_${isa}>)
 endforeach()
 # What has code of its own; headers alone (Eigen, Boost, nlohmann_json) are not asked for again where the library is installed.
-set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB pugixml::pugixml PNG::PNG yaml-cpp hdf5::hdf5
+set(DM_LIBRARY_LINKS fmt::fmt spdlog::spdlog TBB::tbb Threads::Threads ZLIB::ZLIB pugixml::pugixml PNG::PNG OpenEXR::OpenEXR yaml-cpp hdf5::hdf5
                      OpenVDB::openvdb OpenSSL::Crypto embree PkgConfig::DM_BULLET)
 
 foreach(kind ${DM_LIBRARIES})

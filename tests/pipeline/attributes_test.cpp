@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A pool, and two taps of one paint above it, blue and yellow, that run into one another.
-const std::string scene_text = R"(dreampm: 1
+const std::string paints_text = R"(dreampm: 1
 name: taps
 space: {min: [0, 0, 0], max: [0.6, 0.5, 0.3], spacing: 0.025}
 time: {fps: 25, frames: 9}
@@ -63,7 +63,7 @@ class Attributes : public testing::Test {
 };
 
 TEST_F(Attributes, OfParticlesSayWhereTheyCameFromAndWhen) {
-  run(parsed(scene_text), "run");
+  run(parsed(paints_text), "run");
   const ParticleFrame last = particles("run", 9);
   EXPECT_EQ(last.source_names, (std::vector<std::string>{"late", "tap", "pool"}));
   const std::vector<float>&source = last.columns.at("source"), &age = last.columns.at("age");
@@ -90,7 +90,7 @@ TEST_F(Attributes, OfParticlesSayWhereTheyCameFromAndWhen) {
 }
 
 TEST_F(Attributes, AreTheSameInARunThatGoesOn) {
-  const model::Scene scene = parsed(scene_text);
+  const model::Scene scene = parsed(paints_text);
   run(scene, "whole");
   run(scene, "halves", 5);
   run(scene, "halves", {}, true);
@@ -101,7 +101,7 @@ TEST_F(Attributes, AreTheSameInARunThatGoesOn) {
 }
 
 TEST_F(Attributes, OfVerticesAreThoseOfTheParticlesThere) {
-  run(parsed(scene_text), "run");
+  run(parsed(paints_text), "run");
   SilentHost silent;
   const HostScope scope(&silent);
   RunFolder run = open_run(folder_ / "run", Access::write);
@@ -137,7 +137,7 @@ TEST_F(Attributes, OfVerticesAreThoseOfTheParticlesThere) {
 }
 
 TEST_F(Attributes, AnOldRunThatLacksOneSaysSo) {
-  run(parsed(scene_text), "run", 1);
+  run(parsed(paints_text), "run", 1);
   // As a version without these columns wrote it.
   const fs::path file = folder_ / "run/particles/particles_000001.ply";
   ParticleFrame frame = read_particles(file);
@@ -153,7 +153,7 @@ TEST_F(Attributes, AnOldRunThatLacksOneSaysSo) {
 }
 
 TEST_F(Attributes, ASceneWithoutThemWritesNoneOfThem) {
-  std::string text = scene_text;
+  std::string text = paints_text;
   text.replace(text.find("surface: {attributes: [color, source, age, j, vorticity]}"), 57, "");
   while (text.find(", color: [") != std::string::npos) {
     const std::size_t at = text.find(", color: [");
@@ -165,7 +165,7 @@ TEST_F(Attributes, ASceneWithoutThemWritesNoneOfThem) {
 }
 
 TEST(AttributesOfScenes, AWrongNameSaysWhichThereAre) {
-  std::string text = scene_text;
+  std::string text = paints_text;
   text.replace(text.find("vorticity]"), 10, "vorticty]");
   const auto result = scene::parse_scene_text(text, "scene.yaml", {});
   EXPECT_FALSE(result.ok());

@@ -193,7 +193,8 @@ TEST(Surface, SmallDropsOnTheFloorAreFlatCaps) {
 }
 
 TEST(Surface, AStillTankHardlyFlickers) {
-  // Particles of a tank at rest move by 0.006 to 0.011 spacings a frame, root mean square; here by 0.02.
+  // Particles of a tank at rest move by 0.006 to 0.011 spacings a frame, root mean square; here by
+  // 0.02.
   const Vec3f size{0.3f, 0.3f, 0.25f};
   auto points = lattice(kH, size, [](const Vec3f& p) { return p.y < 0.12f; });
   const TriMesh before = reconstruct(in_basin(points, size)).mesh;
