@@ -44,12 +44,13 @@ def test_a_bake_leaves_frames(baked):
     assert run.is_whole(6, ["water", "jelly"]) and not run.is_whole(7, ["water", "jelly"])
     assert (done.progress.stage, done.progress.done, done.progress.total) == ("surface", 6, 6)
     water = run.files("water", 1).read(particles=False)
-    # Blender's axes: the pool lies on z = 0 and is 0.1 high; nothing has moved yet.
-    assert numpy.allclose(water.points.min(axis=0), 0, atol=0.01)
-    assert numpy.allclose(water.points.max(axis=0), (0.2, 0.2, 0.1), atol=0.012)
+    # Blender's axes: the pool lies on z = 0 and is 0.1 high; nothing has moved yet. Its surface reaches half a
+    # spacing, 0.01, into the walls.
+    assert numpy.allclose(water.points.min(axis=0), -0.01, atol=0.001)
+    assert numpy.allclose(water.points.max(axis=0), (0.21, 0.21, 0.1), atol=0.012)
     assert water.velocity.shape == water.points.shape and not water.velocity.any()
     assert water.triangles.max() < len(water.points) and water.normals.shape == water.points.shape
-    assert outward_volume(water) == pytest.approx(0.2 * 0.2 * 0.1, rel=0.1)
+    assert outward_volume(water) == pytest.approx(0.22 * 0.22 * 0.11, rel=0.1)
     # The jelly falls freely at first: by g t downward, in units a second.
     jelly = run.files("jelly", 3).read(particles=False, scale=0.01)
     assert jelly.velocity[:, 2].mean() == pytest.approx(-9.81 * 2 / 24 / 0.01, rel=0.05)

@@ -76,17 +76,20 @@ TEST_F(RunFolder, WorksFromAnywhereAndWithoutItsModels) {
   EXPECT_EQ(t.err, "nothing to do: far/moved/render is up to date\n");
 }
 
-TEST_F(RunFolder, SurfaceInfoAndVideoNeedNoModelAtAll) {
+/// Surfaces meet colliders, and pictures show them.
+TEST_F(RunFolder, InfoNeedsNoModelAndSurfaceAndRenderSayWhichOne) {
   ASSERT_EQ(type("run scene.yaml").code, 0);
   fs::remove_all(folder / "models of mine");
   fs::remove_all(folder / "out/cubes/models");
-  for (const char* line : {"surface out/cubes", "info out/cubes", "info out/cubes/particles/particles_000001.ply"}) {
+  for (const char* line : {"info out/cubes", "info out/cubes/particles/particles_000001.ply"}) {
     const Typed t = type(line);
     EXPECT_EQ(t.code, 0) << line << ": " << t.err;
   }
-  const Typed t = type("render out/cubes");
-  EXPECT_EQ(t.code, 2);
-  EXPECT_THAT(t.err, HasSubstr("/cube.off: cannot be read: No such file"));
+  for (const char* line : {"surface out/cubes", "render out/cubes"}) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << line;
+    EXPECT_THAT(t.err, HasSubstr(line[0] == 's' ? "/cube.off: cannot be read: No such file" : "surface of frame 1"));
+  }
 }
 
 TEST_F(RunFolder, GoesOnAfterItMovedAndItsModelsWent) {

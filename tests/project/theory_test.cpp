@@ -181,8 +181,9 @@ TEST(Theory, IsShort) {
   std::size_t words = 0;
   for (const auto& [name, page] : pages())
     words += all(std::regex_replace(page, std::regex("```math[^`]*```"), ""), "\\S+").size();
-  // Explicit steps have 6000 words, and the projection with all that lies in its liquid 1500.
-  EXPECT_LE(words, 7500u) << "docs/theory has the method; how it was found goes to docs/notes";
+  // Explicit steps have 6000 words, the projection with all that lies in its liquid 1500, and
+  // surfaces 800.
+  EXPECT_LE(words, 8300u) << "docs/theory has the method; how it was found goes to docs/notes";
 }
 
 }  // namespace

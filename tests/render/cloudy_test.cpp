@@ -53,6 +53,17 @@ TEST(Furnace, ADenseWhiteCloudIsInvisible) {
   EXPECT_NEAR(mean_of(render(scene, small_picture(12, 12, 8))).y, 1, 0.005f);
 }
 
+/// Paths that leap ask how far the edges of a basin of glass are, too: a dense pool within one.
+TEST(Cloud, APoolInABasinOfGlassIsDrawn) {
+  const TriMesh pool = box_mesh({0.1f, 0, 0.1f}, {0.9f, 0.5f, 0.9f});
+  RenderScene scene;
+  scene.basin = {{0, 0, 0}, {1, 1, 1}};
+  scene.objects.push_back({&pool, cloud(1.3, 2000)});
+  const Image image = render(scene, small_picture(48, 32, 8));
+  for (const Vec3f& c : image.linear) EXPECT_TRUE(is_finite(c));
+  EXPECT_GT(mean_of(image).y, 0.05f);
+}
+
 TEST(Furnace, CloudsOfColorLoseLightByChannel) {
   const TriMesh ball = ball_mesh({}, 1, 24);
   const auto scene = before_uniform_sky({&ball, model::Look::dielectric(1.333, {0.5, 0, 2}, {1, 4, 8})}, 12);

@@ -27,7 +27,7 @@ struct FoamSource {
 /// their units: speed m/s; trapped_air and vorticity m/s over `scale`; crest 1/m.
 struct Foam {
   double amount = 1;             ///< times everything that is emitted; 0 or more
-  std::vector<std::string> of;   ///< names of materials; empty: every liquid, snow and sand
+  std::vector<std::string> of;   ///< names; empty: every liquid of at most 0.1 Pa s, snow and sand
   std::optional<double> rate;    ///< 1/(m^3 s) of a cause at its upper limit; absent: 5000 a second in scale^3
   std::optional<double> scale;   ///< m, over which motion is compared; absent: by the volume of the matter
   std::optional<double> radius;  ///< m, of the mean; absent: a 20th of the scale

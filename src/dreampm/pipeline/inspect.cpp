@@ -56,10 +56,15 @@ void add_wrapped(const fs::path& file, Inspection& out) {
   out.facts["frame"] = static_cast<std::uint64_t>(number);
   out.facts["material"] = name;
   out.facts["particles_volume"] = volume;
-  if (volume > 0) out.facts["volume_error"] = *out.volume / volume - 1;
+  // Without what reaches into walls and colliders, where the run knows that.
+  double enclosed = *out.volume;
   if (const auto stage = run.record.stages.find("surface"); stage != run.record.stages.end())
-    for (const VolumeRecord& v : stage->second.volumes)
-      if (v.frame == number && v.material == name && v.taken) out.facts["taken_volume"] = *v.taken;
+    for (const VolumeRecord& v : stage->second.volumes) {
+      if (v.frame != number || v.material != name) continue;
+      enclosed = v.mesh;
+      if (v.taken) out.facts["taken_volume"] = *v.taken;
+    }
+  if (volume > 0) out.facts["volume_error"] = enclosed / volume - 1;
 }
 
 /// Says where the file's places count from, and puts the bounds there.

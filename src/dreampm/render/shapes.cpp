@@ -273,12 +273,15 @@ void Geometry::add_bars() {
     }
   if (faces.empty()) return;
   const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  std::ranges::copy(points, static_cast<Vec3f*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                                        sizeof(Vec3f), points.size())));
+  auto* kept = static_cast<Vec3f*>(
+      rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3f), points.size()));
+  if (kept == nullptr) embree_->check("reserving the edges of the basin");
+  std::ranges::copy(points, kept);
   std::ranges::copy(faces, static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(
                                g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, faces.size())));
   Shape shape;
   shape.kind = Kind::bar;
+  shape.points = kept, shape.triangles = std::move(faces);
   attach(g, std::move(shape));
 }
 

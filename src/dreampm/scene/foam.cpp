@@ -98,7 +98,8 @@ const Schema<Foam>& foam_schema() {
       number("amount", &Foam::amount, between(0, 1000)).says("Times everything that is emitted: the key to turn."),
       names_of_things("of", &Foam::of, "material")
           .no_default()
-          .says("Which matter foams; absent: every liquid, and `snow` and `sand`, which give dust."),
+          .says(
+              "Which matter foams; absent: every liquid of at most 0.1 Pa s, and `snow` and `sand`, which give dust."),
       number("rate", &Foam::rate, above_zero("1/(m^3 s)"))
           .says("What a cause emits of a volume at its upper limit; absent: 5000 a second in the cube of `scale`."),
       number("scale", &Foam::scale, above_zero("m"))
@@ -144,8 +145,11 @@ FoamKind foam_kind(const model::Material& material) {
 }
 
 bool foams(const model::Foam& foam, const model::Material& material) {
-  const bool named = foam.of.empty() || std::find(foam.of.begin(), foam.of.end(), material.name) != foam.of.end();
-  return named && foam_kind(material) != FoamKind::none;
+  if (foam_kind(material) == FoamKind::none) return false;
+  if (!foam.of.empty()) return std::find(foam.of.begin(), foam.of.end(), material.name) != foam.of.end();
+  // Thick liquids, as honey, fold over air and do not break up into bubbles.
+  constexpr double thick = 0.1;  // Pa s
+  return !material.values.has("viscosity") || material.values["viscosity"] <= thick;
 }
 
 std::vector<int> foaming_materials(const model::Scene& scene) {
