@@ -16,7 +16,7 @@ PlayScene splash() { return large_step_scene(); }
 
 TEST(LiveFoam, ASplashFoamsAndWaterAtRestDoesNot) {
   Playground p(splash(), quiet_options());
-  play(p, {"frames 40"});
+  play(p, {"set foam 1", "frames 40"});
   const std::size_t in_splash = foam_of(p);
   EXPECT_GT(in_splash, 50u);
   const Frame& frame = *p.frame();
@@ -35,15 +35,15 @@ TEST(LiveFoam, ASplashFoamsAndWaterAtRestDoesNot) {
                                                   "max: [0.4, 0.12, 0.24]}}}\n",
                                                   "still.yaml")},
                    quiet_options());
-  play(still, {"frames 40"});
+  play(still, {"set foam 1", "frames 40"});
   EXPECT_EQ(foam_of(still), 0u);
 }
 
 TEST(LiveFoam, ItChangesNothingOfTheWorldAndIsTheSameTwice) {
   Playground with(splash(), quiet_options()), again(splash(), quiet_options()), without(splash(), quiet_options());
-  play(without, {"set foam 0", "frames 30"});
-  play(with, {"frames 30"});
-  play(again, {"frames 30"});
+  play(without, {"frames 30"});
+  play(with, {"set foam 1", "frames 30"});
+  play(again, {"set foam 1", "frames 30"});
   EXPECT_EQ(foam_of(without), 0u);
   EXPECT_EQ(with.hash(), without.hash());
   EXPECT_EQ(with.frame()->foam.position, again.frame()->foam.position);
@@ -52,7 +52,7 @@ TEST(LiveFoam, ItChangesNothingOfTheWorldAndIsTheSameTwice) {
 
 TEST(LiveFoam, ItIsGoneWhereTimeJumpsAndWhereItIsTurnedOff) {
   Playground p(splash(), quiet_options());
-  play(p, {"frames 40"});
+  play(p, {"set foam 1", "frames 40"});
   ASSERT_GT(foam_of(p), 0u);
   play(p, {"restart", "frames 1"});
   EXPECT_EQ(foam_of(p), 0u);
@@ -70,7 +70,7 @@ TEST(LiveFoam, SolidsDoNot) {
                                              "[0.1, 0.2, 0.08], max: [0.2, 0.3, 0.16]}}}\n",
                                              "cube.yaml")},
                quiet_options());
-  play(p, {"frames 25"});
+  play(p, {"set foam 1", "frames 25"});
   EXPECT_EQ(foam_of(p), 0u);
 }
 

@@ -71,7 +71,7 @@ struct Settings : WorldSettings {
   bool dark = false;
   bool outline = true;
   bool scale_bar = true;
-  bool foam = true;
+  bool foam = false;
 
   bool operator==(const Settings&) const = default;
 };
