@@ -155,6 +155,16 @@ function(dm_module name)
   endif()
 endfunction()
 
+# dm_listing(PAGE FILE): the C++ listing of docs/howto/PAGE as a file: the listing is code, so tests compile it.
+function(dm_listing page file)
+  set(page ${PROJECT_SOURCE_DIR}/docs/howto/${page})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${page})
+  file(READ ${page} text)
+  if(NOT text MATCHES "\n```cpp\n(.*\n)```\n")
+    message(FATAL_ERROR "${page} holds no C++ listing")
+  endif()
+  file(CONFIGURE OUTPUT ${file} CONTENT "${CMAKE_MATCH_1}" @ONLY)
+endfunction()
 # dm_test(NAME [TOGETHER n] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known to ctest.
 # Built in a hurry: what takes time in a test is the library's. TOGETHER: as above, 0 for all files as one.
 function(dm_test name)

@@ -12,6 +12,11 @@
 using namespace dreampm;
 using testing::HasSubstr;
 
+// Of damaged files HDF5 1.10 itself copies beyond the end of a header (H5Aexists), and does not free
+// all. The sanitizers are to watch what the reader does: what HDF5 calls of libc is left out.
+extern "C" const char* __asan_default_suppressions() { return "interceptor_via_lib:libhdf5\n"; }
+extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
+
 namespace {
 
 /// A file with the group VTKHDF of a type.
@@ -175,11 +180,6 @@ TEST_F(VtkHdf, CountsAreWholeNumbers) {
 
 /// Changed anywhere or cut, the file is refused or read, and nothing else.
 TEST_F(VtkHdf, AnyDamageIsAnErrorOrHarmless) {
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-  GTEST_SKIP() << "HDF5 1.10 itself reads beyond a header's end in H5Aexists, in a file with another header length";
-#endif
-#endif
   {
     const File out = square("PolyData");
     out.group("VTKHDF/Polygons");

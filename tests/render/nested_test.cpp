@@ -3,6 +3,7 @@
 
 #include "dreampm/render/color.h"
 #include "dreampm/render/interface.h"
+#include "faces.h"
 #include "shapes.h"
 
 namespace dreampm {
@@ -24,42 +25,24 @@ struct Slabs {
   RenderScene scene;
 };
 
-struct Event {
-  float x;
-  float reflectance;
-  float sine;  ///< behind the face, from the x axis
-};
-
-/// The faces that a ray meets which is always let through.
-std::vector<Event> events(const Geometry& geometry, Vec3f o, Vec3f d) {
-  std::vector<Event> list;
-  Media media;
-  for (int i = 0; i < 10; ++i) {
-    const Hit hit = cast_visible(geometry, o, d, media);
-    if (hit.kind != Kind::dielectric) break;
-    const Split s = split_light(geometry, hit, d, media);
-    const Vec3f p = o + d * hit.t;
-    o = p - s.side * geometry.epsilon(), d = s.refracted, media = s.refracted_media;
-    list.push_back({p.x, s.reflectance, std::sqrt(d.y * d.y + d.z * d.z)});
-  }
-  return list;
-}
+/// Of the direction behind a face, from the x axis.
+float sine_of(const Face& f) { return std::hypot(f.direction.y, f.direction.z); }
 
 void expect_one_interface(const Slabs& slabs, float sine) {
   const Geometry geometry(slabs.scene);
   const Vec3f there{std::sqrt(1 - sine * sine), sine, 0}, back{-there.x, sine, 0};
-  const auto forth = events(geometry, {-1, -0.4f, 0}, there), again = events(geometry, {1, -0.4f, 0}, back);
+  const auto forth = faces(geometry, {-1, -0.4f, 0}, there), again = faces(geometry, {1, -0.4f, 0}, back);
   ASSERT_EQ(forth.size(), 3u);
   ASSERT_EQ(again.size(), 3u);
   const float x[3] = {-0.2f, 0, 0.4f}, n[4] = {1, glass_ior, water_ior, 1};
   for (std::size_t i = 0; i < 3; ++i) {
     float cos_out;
     const float inside = sine / n[i], share = fresnel(std::sqrt(1 - inside * inside), n[i] / n[i + 1], cos_out);
-    EXPECT_NEAR(forth[i].x, x[i], 1e-4f);
-    EXPECT_NEAR(forth[i].sine, sine / n[i + 1], 1e-4f) << "Snell";
+    EXPECT_NEAR(forth[i].at.x, x[i], 1e-4f);
+    EXPECT_NEAR(sine_of(forth[i]), sine / n[i + 1], 1e-4f) << "Snell";
     EXPECT_NEAR(forth[i].reflectance, share, 1e-5f) << "Fresnel, by the relative index";
-    EXPECT_NEAR(again[2 - i].x, x[i], 1e-4f);
-    EXPECT_NEAR(again[2 - i].sine, sine / n[i], 1e-4f);
+    EXPECT_NEAR(again[2 - i].at.x, x[i], 1e-4f);
+    EXPECT_NEAR(sine_of(again[2 - i]), sine / n[i], 1e-4f);
     EXPECT_NEAR(again[2 - i].reflectance, share, 1e-5f) << "the same both ways";
   }
 }
@@ -70,7 +53,7 @@ TEST(Nested, WaterThatReachesIntoGlassHasOneFaceWithIt) {
 
 TEST(Nested, WaterThatStopsShortOfGlassLeavesAir) {
   const Slabs apart(0.02f);
-  EXPECT_EQ(events(Geometry(apart.scene), {-1, -0.4f, 0}, {1, 0, 0}).size(), 4u);
+  EXPECT_EQ(faces(Geometry(apart.scene), {-1, -0.4f, 0}, {1, 0, 0}).size(), 4u);
 }
 
 TEST(Nested, TheRayKnowsWhereItStarts) {

@@ -5,6 +5,7 @@
 #include "dreampm/render/color.h"
 #include "dreampm/render/interface.h"
 #include "dreampm/surface/surface.h"
+#include "faces.h"
 #include "shapes.h"
 #include "solid_of.h"
 
@@ -48,26 +49,6 @@ struct WetGlass {
   TriMesh glass, water;
   RenderScene scene;
 };
-
-struct Face {
-  Vec3f at;
-  float reflectance;
-  float before, behind;  ///< indices of refraction
-  Vec3f direction;       ///< behind it
-};
-std::vector<Face> faces(const Geometry& geometry, Vec3f o, Vec3f d) {
-  std::vector<Face> list;
-  Media media;
-  for (int i = 0; i < 20; ++i) {
-    const Hit hit = cast_visible(geometry, o, d, media);
-    if (hit.kind != Kind::dielectric) break;
-    const Split s = split_light(geometry, hit, d, media);
-    const Vec3f p = o + d * hit.t;
-    list.push_back({p, s.reflectance, ior(geometry, media), ior(geometry, s.refracted_media), s.refracted});
-    o = p - s.side * geometry.epsilon(), d = s.refracted, media = s.refracted_media;
-  }
-  return list;
-}
 
 /// The inner faces of a glass box, which water fills: [-a, a]^3 within [-b, b]^3.
 constexpr float a = 0.3f, b = 0.4f;

@@ -3,18 +3,20 @@
 #include <cmath>
 
 #include "dreampm/geometry/nearest_on_triangle.h"
-#include "dreampm/render/intersect_impl.h"
+#include "dreampm/render/embree.h"
+#include "dreampm/render/intersect.h"
+#include "dreampm/render/traced_shape.h"
 
 namespace dreampm::trace {
 
 float Geometry::clearance(const Vec3f& p, float most) const {
   if (moves_) return 0;
   struct Search {
-    const std::vector<Shape>* shapes;
+    const std::vector<TracedShape>* shapes;
     Vec3f from;
     static bool visit(RTCPointQueryFunctionArguments* a) {
       const auto& search = *static_cast<const Search*>(a->userPtr);
-      const Shape& shape = (*search.shapes)[a->geomID];
+      const TracedShape& shape = (*search.shapes)[a->geomID];
       float near = 0;
       if (shape.points != nullptr) {
         const auto& [i, j, k] = shape.triangles[a->primID];

@@ -1,7 +1,8 @@
 // Matter that scatters light: a random walk through it, with the true faces of the matter around
 // it, and light from the sun and the lamps at each step (Kajiya and Von Herzen 1984; Novak et al.
 // 2018, "Monte Carlo methods for volumetric light transport simulation", 3.1 and 4).
-#include "dreampm/render/integrator_impl.h"
+#include "dreampm/render/integrator.h"
+#include "dreampm/render/path.h"
 #include "dreampm/render/phase.h"
 
 namespace dreampm::trace {
@@ -30,7 +31,7 @@ float draw_length(const Vec3f& share, const Vec3f& extinction, Sampler& random) 
 
 }  // namespace
 
-Integrator::FreePath Integrator::free_path(const Path& r, const Interior& in, Sampler& random) const {
+FreePath Integrator::free_path(const Path& r, const Interior& in, Sampler& random) const {
   FreePath free;
   free.share = shares_of(r.weight);
   free.length = draw_length(free.share, in.extinction, random);

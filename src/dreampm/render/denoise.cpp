@@ -3,7 +3,9 @@
 #include <dlfcn.h>
 
 #include <cstdlib>
+#include <map>
 #include <memory>
+#include <mutex>
 
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -39,10 +41,10 @@ struct Loaded {
   std::string file, why;  ///< why there is none
 };
 
-Loaded load() {
+/// `named`: by DREAMPM_OIDN; empty: it is not.
+Loaded load(const std::string& named) {
   Loaded out;
-  const char* const named = std::getenv("DREAMPM_OIDN");
-  const bool is_named = named != nullptr && *named != 0;
+  const bool is_named = !named.empty();
   out.file = is_named ? named : "libOpenImageDenoise.so.2";
   void* const library = dlopen(out.file.c_str(), RTLD_NOW | RTLD_LOCAL);
   if (library == nullptr) {
@@ -67,9 +69,15 @@ Loaded load() {
   return out;
 }
 
+/// Each name is tried once.
 const Loaded& loaded() {
-  static const Loaded once = load();
-  return once;
+  static std::mutex mutex;
+  static std::map<std::string, Loaded> by_name;
+  const char* const named = std::getenv("DREAMPM_OIDN");
+  const std::string name = named != nullptr ? named : "";
+  const std::lock_guard lock(mutex);
+  const auto known = by_name.find(name);
+  return known != by_name.end() ? known->second : by_name.emplace(name, load(name)).first->second;
 }
 
 void check(const Oidn& call, OidnDevice* device, const char* doing) {

@@ -1,6 +1,7 @@
 // Light that arrives at surfaces straight from the sun, the lamps and the bright parts of the sky,
 // and by photons.
-#include "dreampm/render/integrator_impl.h"
+#include "dreampm/render/integrator.h"
+#include "dreampm/render/path.h"
 
 namespace dreampm::trace {
 

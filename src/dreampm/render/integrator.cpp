@@ -1,6 +1,6 @@
 #include "dreampm/render/integrator.h"
 
-#include "dreampm/render/integrator_impl.h"
+#include "dreampm/render/path.h"
 
 namespace dreampm::trace {
 namespace {
@@ -20,7 +20,7 @@ Vec3f leaving(const Vec3f& d, const Vec3f& face) {
 }  // namespace
 
 Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time) const {
-  Stack stack;
+  PathStack stack;
   Path& first = stack.paths[stack.size++];
   first.o = o, first.d = d, first.media.time = time;
   first.sun_disc = options_.sun_disc;
@@ -43,7 +43,7 @@ Vec3f Integrator::beyond(const Path& r) const {
 }
 
 /// To the next surface, or the next place in cloudy matter that scatters. False: the path ends.
-bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, Stack& stack) const {
+bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) const {
   const bool glows = options_.looks && !options_.physical;
   const Interior* const before = geometry_.interior(r.media.top());
   const bool cloudy = before != nullptr && before->scatters;
@@ -86,7 +86,7 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, Stack& stack) const 
   return at_surface(r, hit, p, random, sum, stack);
 }
 
-bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const {
   const float fade = pattern_.fade(p.x, p.z);
   const Vec3f far = sky_.radiance(normalized(Vec3f{r.d.x, 0, r.d.z}), false);
   const float footprint = r.distance * options_.pixel_angle / std::max(0.05f, -r.d.y);
@@ -117,7 +117,8 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, 
   return true;
 }
 
-bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
+                            PathStack& stack) const {
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
   const Frame frame(n);
   const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
@@ -130,7 +131,7 @@ bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& ra
 }
 
 /// Follows the lobes of a surface: all of them early on, later one by lot.
-bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, Stack& stack) const {
+bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, PathStack& stack) const {
   const Path before = r;
   r.polished = true;
   r.o = at.p + at.face * geometry_.epsilon();
@@ -168,7 +169,8 @@ bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, Stack& stac
 
 // What a grain covers scatters, and the rest goes on: both ways are followed, so that a grain
 // smaller than a pixel is a share of it and no noise.
-bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
+                          PathStack& stack) const {
   --r.bounces;  // passing is no bounce
   Path passed = r;
   passed.o = p + r.d * geometry_.epsilon();
@@ -216,7 +218,8 @@ bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   return true;
 }
 
-bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const {
+bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
+                          PathStack& stack) const {
   if (hit.kind == Kind::bar) {
     if (hit.back) {
       r.o = p + r.d * geometry_.epsilon();

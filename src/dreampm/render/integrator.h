@@ -10,6 +10,11 @@
 
 namespace dreampm::trace {
 
+struct FreePath;
+struct Path;
+struct PathStack;
+struct Shading;
+
 struct PathOptions {
   const FloorLight* floor_light = nullptr;  ///< absent: the floor is traced plainly
   const PhotonMap* photons = nullptr;       ///< absent: light goes straight through clear matter, only dimmed
@@ -31,17 +36,13 @@ class Integrator {
   Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time = 0.5f) const;
 
  private:
-  struct Path;
-  struct Stack;
-  struct Shading;
-  struct FreePath;
-  bool step(Path& path, Sampler& random, Vec3f& sum, Stack& stack) const;
+  bool step(Path& path, Sampler& random, Vec3f& sum, PathStack& stack) const;
   Vec3f beyond(const Path& path) const;
-  bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
-  bool at_surface(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
-  bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
-  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, Stack& stack) const;
-  bool bounce(Path& path, const Shading& at, Sampler& random, Stack& stack) const;
+  bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool at_surface(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool bounce(Path& path, const Shading& at, Sampler& random, PathStack& stack) const;
 
   // The light that arrives at surfaces: direct.cpp.
   /// What a surface sends to the path of light that comes straight from lights, and of photons.

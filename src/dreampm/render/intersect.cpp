@@ -7,12 +7,13 @@
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/render/color.h"
-#include "dreampm/render/intersect_impl.h"
+#include "dreampm/render/embree.h"
+#include "dreampm/render/traced_shape.h"
 
 namespace dreampm::trace {
 
 Geometry::Geometry(const RenderScene& scene)
-    : embree_(std::make_unique<Embree>()),
+    : embree_(std::make_unique<EmbreeScene>()),
       basin_(scene.basin),
       bounds_(scene.basin),
       is_wall_(scene.is_wall),
@@ -80,7 +81,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     first_hit(embree_->scene, r);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-      const Shape& shape = shapes_[r.hit.geomID];
+      const TracedShape& shape = shapes_[r.hit.geomID];
       const std::size_t primitive = r.hit.primID;
       hit.t = r.ray.tfar;
       hit.kind = shape.kind;

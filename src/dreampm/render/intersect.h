@@ -17,6 +17,9 @@ namespace dreampm::trace {
 inline constexpr int air = -1;
 inline constexpr unsigned no_shape = ~0u;
 
+struct EmbreeScene;
+struct TracedShape;
+
 enum class Kind : std::uint8_t { none, dielectric, opaque, bar, pane, floor };
 
 struct Hit {
@@ -71,24 +74,22 @@ class Geometry {
   int rank(int object) const { return ranks_[static_cast<std::size_t>(object)]; }
 
  private:
-  struct Embree;
-  struct Shape;
   /// `mesh`: that of `from`, or what stands for it.
   void add_mesh(const TriMesh& mesh, const RenderObject& from, int object);
-  void set_motion(const TriMesh& mesh, const RenderObject& from, Shape& shape, int object);
+  void set_motion(const TriMesh& mesh, const RenderObject& from, TracedShape& shape, int object);
   /// Where a vertex at p goes, by walls.
   Vec3f carried(const Vec3f& p, const Vec3f& way) const;
   void add_spheres(const RenderSpheres& spheres, int object);
   void add_grains(const RenderGrains& grains, int object);
   template <class Radius>
-  void add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, const Radius& radius, Shape shape);
+  void add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, const Radius& radius, TracedShape shape);
   void add_bars();
-  void attach(RTCGeometryTy* g, Shape shape);
+  void attach(RTCGeometryTy* g, TracedShape shape);
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
-  std::unique_ptr<Embree> embree_;
-  std::vector<Shape> shapes_;                       ///< by Embree's geometry number
+  std::unique_ptr<EmbreeScene> embree_;
+  std::vector<TracedShape> shapes_;                 ///< by Embree's geometry number
   std::vector<std::unique_ptr<const Look>> looks_;  ///< these five by object
   std::vector<const Interior*> interiors_;
   std::vector<Vec3f> colors_;

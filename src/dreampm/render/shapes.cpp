@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "dreampm/render/color.h"
-#include "dreampm/render/intersect_impl.h"
+#include "dreampm/render/embree.h"
+#include "dreampm/render/intersect.h"
+#include "dreampm/render/traced_shape.h"
 
 namespace dreampm::trace {
 namespace {
@@ -24,23 +26,23 @@ std::pair<std::size_t, float> step_at(float time, std::size_t steps) {
 
 }  // namespace
 
-Vec3f Geometry::Shape::color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
+Vec3f TracedShape::color(const Vec3f& of_look, std::size_t primitive, float u, float v) const {
   if (colors.empty()) return of_look;
   return spheres ? colors[primitive] : mixed(colors, primitive, u, v);
 }
 
-Vec3f Geometry::Shape::velocity(std::size_t primitive, float u, float v) const {
+Vec3f TracedShape::velocity(std::size_t primitive, float u, float v) const {
   if (velocities.empty()) return {};
   return spheres ? velocities[primitive] : mixed(velocities, primitive, u, v);
 }
 
-Vec3f Geometry::Shape::normal(std::size_t primitive, float u, float v, float time) const {
+Vec3f TracedShape::normal(std::size_t primitive, float u, float v, float time) const {
   if (turned.empty()) return mixed(normals, primitive, u, v);
   const auto [k, share] = step_at(time, turned.size());
   return mixed(turned[k], primitive, u, v) * (1 - share) + mixed(turned[k + 1], primitive, u, v) * share;
 }
 
-Vec3f Geometry::Shape::moved(std::size_t primitive, float u, float v, float time) const {
+Vec3f TracedShape::moved(std::size_t primitive, float u, float v, float time) const {
   if (steps.empty()) return {};
   const auto at = [&](float t) {
     const auto [k, share] = step_at(t, steps.size());
@@ -74,7 +76,7 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
     fail_input("render: {} colors for {} vertices (object {}); give one each, or none", colors.size(), vertices,
                object);
   const bool given = mesh.normals.size() == vertices;
-  Shape shape;
+  TracedShape shape;
   shape.colors.assign(colors.begin(), colors.end());
   shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
@@ -115,7 +117,7 @@ void Geometry::add_mesh(const TriMesh& mesh, const RenderObject& from, int objec
   attach(g, std::move(shape));
 }
 
-void Geometry::attach(RTCGeometryTy* g, Shape shape) {
+void Geometry::attach(RTCGeometryTy* g, TracedShape shape) {
   rtcCommitGeometry(g);
   rtcAttachGeometryByID(embree_->scene, g, static_cast<unsigned>(shapes_.size()));
   rtcReleaseGeometry(g);
@@ -123,7 +125,7 @@ void Geometry::attach(RTCGeometryTy* g, Shape shape) {
 }
 
 // Matter on a pane slides along it, and none goes through it.
-void Geometry::set_motion(const TriMesh& mesh, const RenderObject& from, Shape& shape, int object) {
+void Geometry::set_motion(const TriMesh& mesh, const RenderObject& from, TracedShape& shape, int object) {
   const std::size_t n = mesh.vertices.size();
   if (!mesh.velocities.empty() && mesh.velocities.size() != n)
     fail_input("render: {} velocities for {} vertices (object {}); give one each, or none", mesh.velocities.size(), n,
@@ -182,7 +184,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
     fail_input("render: {} colors for {} spheres (object {}); give one each, or none", spheres.colors.size(), n,
                object);
   if (n == 0) return;
-  Shape shape;
+  TracedShape shape;
   shape.kind = interiors_.back() != nullptr ? Kind::dielectric : Kind::opaque;
   shape.object = object;
   shape.spheres = true;
@@ -196,7 +198,7 @@ void Geometry::add_spheres(const RenderSpheres& spheres, int object) {
 }
 
 template <class Radius>
-void Geometry::add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, const Radius& radius, Shape shape) {
+void Geometry::add_points(RTCGeometryTy* g, std::span<const Vec3f> positions, const Radius& radius, TracedShape shape) {
   const std::size_t n = positions.size();
   const bool moving = open_ > 0 && !shape.velocities.empty();
   rtcSetGeometryTimeStepCount(g, moving ? 2 : 1);
@@ -223,7 +225,7 @@ void Geometry::add_grains(const RenderGrains& grains, int object) {
     fail_input("render: {} grains (object {}) with {} radii, {} opacities and {} colors; give one each", n, object,
                grains.radii.size(), grains.opacity.size(), grains.colors.size());
   if (n == 0) return;
-  Shape shape;
+  TracedShape shape;
   shape.kind = Kind::opaque;
   shape.object = object;
   shape.spheres = true;
@@ -279,7 +281,7 @@ void Geometry::add_bars() {
   std::ranges::copy(points, kept);
   std::ranges::copy(faces, static_cast<std::array<std::uint32_t, 3>*>(rtcSetNewGeometryBuffer(
                                g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, faces.size())));
-  Shape shape;
+  TracedShape shape;
   shape.kind = Kind::bar;
   shape.points = kept, shape.triangles = std::move(faces);
   attach(g, std::move(shape));

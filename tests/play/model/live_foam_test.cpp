@@ -14,6 +14,15 @@ std::size_t foam_of(Playground& p) { return p.frame()->bubbles.size() + p.frame(
 /// A column of water that falls into a tank: it splashes within half a second.
 PlayScene splash() { return large_step_scene(); }
 
+/// One box of matter in the same tank.
+PlayScene box_of(const std::string& material, const std::string& box, const std::string& solver) {
+  return {"box", parse_scene("dreampm: 1\nname: box\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], spacing: 0.02}\n"
+                             "time: {fps: 60, seconds: 5, solver: " +
+                                 solver + "}\nmaterials:\n  matter: {" + material +
+                                 "}\nbodies:\n  box: {material: matter, shape: {box: {" + box + "}}}\n",
+                             "box.yaml")};
+}
+
 TEST(LiveFoam, ASplashFoamsAndWaterAtRestDoesNot) {
   Playground p(splash(), quiet_options());
   play(p, {"set foam 1", "frames 40"});
@@ -28,12 +37,7 @@ TEST(LiveFoam, ASplashFoamsAndWaterAtRestDoesNot) {
       EXPECT_LT(std::max(std::abs(x.x - 0.2f), std::abs(x.z - 0.12f)), 0.25f);
     }
   }
-  Playground still(PlayScene{"still", parse_scene("dreampm: 1\nname: still\nspace: {min: [0, 0, 0], max: [0.4, 0.4, "
-                                                  "0.24], spacing: 0.02}\ntime: {fps: 60, seconds: 5, solver: "
-                                                  "projection}\nmaterials:\n  water: {type: newtonian, preset: water}\n"
-                                                  "bodies:\n  pool: {material: water, shape: {box: {min: [0, 0, 0], "
-                                                  "max: [0.4, 0.12, 0.24]}}}\n",
-                                                  "still.yaml")},
+  Playground still(box_of("type: newtonian, preset: water", "min: [0, 0, 0], max: [0.4, 0.12, 0.24]", "projection"),
                    quiet_options());
   play(still, {"set foam 1", "frames 40"});
   EXPECT_EQ(foam_of(still), 0u);
@@ -64,11 +68,7 @@ TEST(LiveFoam, ItIsGoneWhereTimeJumpsAndWhereItIsTurnedOff) {
 
 /// Jelly does not foam, whatever it does.
 TEST(LiveFoam, SolidsDoNot) {
-  Playground p(PlayScene{"cube", parse_scene("dreampm: 1\nname: cube\nspace: {min: [0, 0, 0], max: [0.4, 0.4, 0.24], "
-                                             "spacing: 0.02}\ntime: {fps: 60}\nmaterials:\n  jelly: {type: elastic, "
-                                             "preset: jelly}\nbodies:\n  cube: {material: jelly, shape: {box: {min: "
-                                             "[0.1, 0.2, 0.08], max: [0.2, 0.3, 0.16]}}}\n",
-                                             "cube.yaml")},
+  Playground p(box_of("type: elastic, preset: jelly", "min: [0.1, 0.2, 0.08], max: [0.2, 0.3, 0.16]", "explicit"),
                quiet_options());
   play(p, {"set foam 1", "frames 25"});
   EXPECT_EQ(foam_of(p), 0u);

@@ -1,28 +1,13 @@
-// What Geometry holds, for its own files.
+// One mesh, or balls of one object, as the tracer meets them.
 #pragma once
 #include <array>
 
-#include "dreampm/base/error.h"
-#include "dreampm/render/embree.h"
 #include "dreampm/render/intersect.h"
 
 namespace dreampm::trace {
 
-struct Geometry::Embree {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
-  ~Embree() {
-    if (scene != nullptr) rtcReleaseScene(scene);
-    if (device != nullptr) rtcReleaseDevice(device);
-  }
-  void check(const char* doing) const {
-    const RTCError e = rtcGetDeviceError(device);
-    if (e == RTC_ERROR_OUT_OF_MEMORY) fail_run("Embree ran out of memory while {}", doing);
-    if (e != RTC_ERROR_NONE) fail_run("Embree failed with error {} while {}", static_cast<int>(e), doing);
-  }
-};
-
-struct Geometry::Shape {
+/// What of a geometry of Embree is asked for at a hit, and Embree does not give.
+struct TracedShape {
   Kind kind = Kind::none;
   int object = air;
   bool spheres = false;

@@ -1,16 +1,17 @@
-// The parts of the integrator that its files share.
+// A path of light on its way, and what it meets.
 #pragma once
 #include <array>
 
 #include "dreampm/render/color.h"
-#include "dreampm/render/integrator.h"
+#include "dreampm/render/interface.h"
+#include "dreampm/render/surfaces.h"
 
 namespace dreampm::trace {
 
 /// Below this weight paths go on by lot.
 inline constexpr float weak = 0.02f;
 
-struct Integrator::Path {
+struct Path {
   Vec3f o, d, weight{1, 1, 1};
   Media media;
   int bounces = 0;
@@ -24,14 +25,15 @@ struct Integrator::Path {
   float clear = 0;      ///< m: within that no surface is around o, while it is in cloudy matter
 };
 
-struct Integrator::Stack {
+/// Paths that are still to be followed.
+struct PathStack {
   std::array<Path, 16> paths;
   std::size_t size = 0;
   bool room() const { return size < paths.size(); }
 };
 
 /// A point of a surface that a path met.
-struct Integrator::Shading {
+struct Shading {
   Vec3f p, n, face;  ///< m; both normals on the path's side
   Frame frame;       ///< about n
   Vec3f view;        ///< in the frame
@@ -40,7 +42,7 @@ struct Integrator::Shading {
 };
 
 /// How far a path goes in cloudy matter.
-struct Integrator::FreePath {
+struct FreePath {
   float length = 1e9f;   ///< m
   Vec3f share{1, 0, 0};  ///< with which chance each channel chose it
 };
