@@ -61,8 +61,9 @@ void oidnExecuteFilter(Filter* f) {
   if (!f->committed || out.data == nullptr) failure = "not committed, or no output";
   if (light != f->flags["hdr"] || light != f->flags["cleanAux"]) failure = "light is hdr, and its images are clean";
   for (std::size_t i = 0; i < 3 * out.width * out.height; ++i)
-    out.data[i] = light ? f->images["color"].data[i] + 4 * f->images["albedo"].data[i] + 16 * f->images["normal"].data[i]
-                        : 0.5f * f->images[f->images.contains("albedo") ? "albedo" : "normal"].data[i];
+    out.data[i] = light
+                      ? f->images["color"].data[i] + 4 * f->images["albedo"].data[i] + 16 * f->images["normal"].data[i]
+                      : 0.5f * f->images[f->images.contains("albedo") ? "albedo" : "normal"].data[i];
 }
 void oidnReleaseFilter(Filter* f) { delete f; }
 }

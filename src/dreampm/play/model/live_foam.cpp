@@ -60,45 +60,44 @@ FrameRecord LiveFoam::record(const Simulation& simulation) const {
   return now;
 }
 
-void LiveFoam::move(Kind& kind, const Simulation& simulation, const model::Foam& foam) {
+void LiveFoam::move(Kind& kind, const Simulation& simulation, const model::Foam& foam, const FrameRecord& now) {
   const model::Scene& scene = simulation.scene().model();
-  FoamingMatter now = matter_of(simulation, foam, kind.dust);
-  if (now.position.empty() && kind.foam.size() == 0) return;
-  kind.volume = std::max(kind.volume, static_cast<double>(now.position.size()) * std::pow(scene.space.spacing, 3));
-  kind.rules = foam_rules(foam, scene, kind.dust, {}, kind.volume);
-  kind.rules.most = std::min(kind.rules.most, most_live);
+  FoamingMatter matter = matter_of(simulation, foam, kind.dust);
+  if (matter.position.empty() && kind.foam.size() == 0) return;
   kind.color = color_of(simulation, foam, kind.dust);
-  const FrameRecord at = record(simulation);
-  const std::vector<foam::Obstacle> obstacles = obstacles_->at(at, before_);
+  kind.volume = std::max(kind.volume, static_cast<double>(matter.position.size()) * std::pow(scene.space.spacing, 3));
+  FoamRules rules = foam_rules(foam, scene, kind.dust, {}, kind.volume);
+  rules.most = std::min(rules.most, most_live);
+  const std::vector<foam::Obstacle> obstacles = obstacles_->at(now, before_);
   if (!limits_given(foam) && frame_ % limits_every == 0) {
-    kind.maxima.push_back(foam_maxima(now.view(), obstacles, kind.rules));
+    kind.maxima.push_back(foam_maxima(matter.view(), obstacles, rules));
     if (kind.maxima.size() > most_maxima) kind.maxima.erase(kind.maxima.begin());
   }
-  set_limits(kind.rules, foam, found_limits(kind.maxima, kind.rules));
+  set_limits(rules, foam, found_limits(kind.maxima, rules));
   if (frame_ > 0)
-    kind.foam = advance_foam(kind.foam, kind.matter.view(), now.view(), obstacles, static_cast<float>(at.time - time_),
-                             frame_, kind.rules)
+    kind.foam = advance_foam(kind.foam, kind.matter.view(), matter.view(), obstacles,
+                             static_cast<float>(now.time - before_.time), frame_, rules)
                     .particles;
-  kind.matter = std::move(now);
+  kind.matter = std::move(matter);
 }
 
 void LiveFoam::see(const Simulation& simulation) {
   const double time = simulation.time();
-  if (time_ >= 0 && (time < time_ || time > time_ + longest_gap)) forget();
-  if (time_ >= 0 && time < time_ + 0.999 * foam_interval) return;
-  if (kinds_.empty()) kinds_ = {{.dust = false}, {.dust = true}};
+  if (!kinds_.empty() && (time < before_.time || time > before_.time + longest_gap)) forget();
+  if (!kinds_.empty() && time < before_.time + 0.999 * foam_interval) return;
   const model::Scene& scene = simulation.scene().model();
   if (std::vector<std::string> names = names_of(scene.colliders); !obstacles_ || names != colliders_)
     obstacles_ = std::make_shared<const FoamObstacles>(scene, Vec3d{}), colliders_ = std::move(names);
-  if (time_ < 0) before_ = record(simulation);
+  FrameRecord now = record(simulation);
+  if (kinds_.empty()) kinds_ = {{.dust = false}, {.dust = true}}, before_ = now;
   const model::Foam foam = scene.foam.value_or(model::Foam{});
-  for (Kind& kind : kinds_) move(kind, simulation, foam);
-  before_ = record(simulation), time_ = time, ++frame_;
+  for (Kind& kind : kinds_) move(kind, simulation, foam, now);
+  before_ = std::move(now), ++frame_;
 }
 
 void LiveFoam::show(double time, FoamSprites& in_liquid, FoamSprites& outside) const {
   for (FoamSprites* s : {&in_liquid, &outside}) s->position.clear(), s->radius.clear(), s->color.clear();
-  const auto later = static_cast<float>(time - time_);
+  const auto later = static_cast<float>(time - before_.time);
   for (const Kind& kind : kinds_)
     for (std::size_t i = 0; i < kind.foam.size(); ++i) {
       const FoamType type = kind.foam.type[i];

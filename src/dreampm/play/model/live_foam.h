@@ -29,19 +29,17 @@ class LiveFoam {
   struct Kind {
     bool dust = false;
     Vec3f color{};  ///< sRGB
-    FoamRules rules{};
     FoamParticles foam{};
     FoamingMatter matter{};  ///< when it was moved on last
     std::vector<FoamMaxima> maxima{};
     double volume = 0;  ///< m^3, the most that there was
   };
-  void move(Kind& kind, const Simulation& simulation, const model::Foam& foam);
+  void move(Kind& kind, const Simulation& simulation, const model::Foam& foam, const FrameRecord& now);
   FrameRecord record(const Simulation& simulation) const;
 
-  std::vector<Kind> kinds_;
-  double time_ = -1;  ///< s, when it was moved on last; below 0: never
-  int frame_ = 0;     ///< counts how often
-  FrameRecord before_{};
+  std::vector<Kind> kinds_;             ///< empty: it was never moved on
+  int frame_ = 0;                       ///< counts how often it was
+  FrameRecord before_{};                ///< when it was last
   std::vector<std::string> colliders_;  ///< that obstacles_ is of
   std::shared_ptr<const FoamObstacles> obstacles_;
 };
