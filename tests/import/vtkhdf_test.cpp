@@ -12,8 +12,8 @@
 using namespace dreampm;
 using testing::HasSubstr;
 
-// Of damaged files HDF5 1.10 itself copies beyond the end of a header (H5Aexists), and does not free
-// all. The sanitizers are to watch what the reader does: what HDF5 calls of libc is left out.
+// Of damaged files HDF5 1.10 itself copies beyond the end of a header (H5Aexists), and does not
+// free all. The sanitizers are to watch what the reader does: what HDF5 calls of libc is left out.
 extern "C" const char* __asan_default_suppressions() { return "interceptor_via_lib:libhdf5\n"; }
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5\n"; }
 

@@ -1,5 +1,5 @@
-// A library with the functions of Open Image Denoise 2 that the renderer calls, for tests of what it
-// hands over. Its "filter" keeps half of an auxiliary image, and adds both to light: 4 times the
+// A library with the functions of Open Image Denoise 2 that the renderer calls, for tests of what
+// it hands over. Its "filter" keeps half of an auxiliary image, and adds both to light: 4 times the
 // reflectance, 16 times the normal. tests/python/test_denoise.py has the real one.
 #include <cstddef>
 #include <cstdlib>
