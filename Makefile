@@ -4,6 +4,7 @@
 #   make boxes      the same, then a spring carries boxes over an edge: out/drifting-boxes-preview/*.mp4
 #   make fill       the same, then a tap fills a hollow dragon: out/flow-in-the-dragon-preview/*.mp4
 #   make play       the same, then the playground in a window; PLAY=honey-coil: another story or scene
+#   make cuda       the kernels for NVIDIA GPUs, by a compiler that pip fetches (0.5 GB): docs/guide/gpu.md
 #   make install    the same, then command and library into PREFIX, by default /usr/local; DESTDIR=FOLDER: below FOLDER
 #   make package    the same, then a .deb and a .tar.gz in build/packages/
 #   make test       the same, then every test
@@ -20,13 +21,14 @@
 #   make wheel      a wheel of the Python package that brings its libraries along, in build/wheels/
 #   make blender      the extension for Blender 4.2 and newer: build/dreampm-blender-VERSION.zip
 #   make test-blender   the extension within Blender: pip fetches bpy, 0.4 GB, once
+#   make test-gpu   the kernels for GPUs by nvcc, which pip fetches, and by clang for CUDA and HIP; it needs no GPU
 #   make test-farm    jobs of Open Job Description, run by openjd-cli, which pip fetches
 #   make test-slurm   jobs of Slurm on a cluster of one machine: half a minute, as root
 #   make test-dragon    fetches the dragon and checks its points at full resolution: a minute or two
 # Variables: CXX (default g++), TEST_JOBS (tests at once, default 2), MODEL (make demo MODEL=FILE or asset:knot: in place
 # of the dragon).
 .DEFAULT_GOAL := all
-.PHONY: all install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender test-farm test-slurm check format clean
+.PHONY: all cuda test-gpu install package docs tidy demo boxes fill play test validate test-dragon test-asan test-tsan test-clang test-neon fuzz test-python wheel blender test-blender test-farm test-slurm check format clean
 # A half-written stamp or build.ninja must not count as made.
 .DELETE_ON_ERROR:
 
@@ -120,6 +122,14 @@ test-asan: build-asan/build.ninja
 test-clang: build-clang/build.ninja
 	@$(NINJA) -C build-clang $(if $(MODULES),dm_solver dm_validate_measure $(MODULES:%=test_%))
 	@$(CTEST) --test-dir build-clang $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
+
+# libdreampm_cuda.so beside the command: `--backend cuda`.
+cuda:
+	@tools/build_cuda build/libdreampm_cuda.so
+
+test-gpu: build/setup-dev.stamp
+	@start=$$(date +%s); tools/check_device cuda hip && tools/build_cuda build/test-gpu/libdreampm_cuda.so && \
+	  echo "3 passed in $$(($$(date +%s) - start)).0s"
 
 test-neon: build/setup.stamp build/setup-dev.stamp
 	@tools/test_neon build-neon

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/gpu/cuda/cuda.h"
 #include "dreampm/pipeline/fill_report.h"
 #include "dreampm/render/denoise.h"
 #include "verbs.h"
@@ -99,6 +100,7 @@ void print_fill_text(const FrameFill& fill) {
 int print_program(bool json) {
   const MachineRecord machine = this_machine(std::string(cpu_instruction_sets().back()), thread_count());
   const DenoiserState denoiser = find_denoiser();
+  const gpu::CudaState cuda = gpu::find_cuda();
   if (json) {
     Json j;
     j["kind"] = "program";
@@ -108,6 +110,7 @@ int print_program(bool json) {
     j["isa"] = machine.isa;
     j["threads"] = machine.threads;
     j["memory_bytes"] = machine_memory_bytes();
+    j["gpu"] = {{"found", cuda.found}, {"text", cuda.text}};
     j["denoiser"] = {{"found", denoiser.found}, {"text", denoiser.text}};
     fmt::print("{}\n", j.dump(2, ' ', false, Json::error_handler_t::replace));
     return 0;
@@ -118,8 +121,18 @@ int print_program(bool json) {
   line("cpu", fmt::format("{}, {}", machine.cpu, machine.isa));
   line("threads", fmt::format("{}", machine.threads));
   line("memory", bytes_text(machine_memory_bytes()));
+  line("gpu", cuda.text);
   line("denoiser", denoiser.text);
   return 0;
+}
+
+int print_device(bool json) {
+  const gpu::CudaState cuda = gpu::find_cuda();
+  if (json)
+    fmt::print("{}\n", Json{{"kind", "device"}, {"found", cuda.found}, {"text", cuda.text}}.dump(2));
+  else
+    fmt::print("{}\n", cuda.text);
+  return cuda.found ? 0 : 1;
 }
 
 }  // namespace
@@ -127,7 +140,7 @@ int print_program(bool json) {
 void add_info(CLI::App& app, Action& action) {
   struct Arguments {
     std::string path;
-    bool json = false, fill = false;
+    bool json = false, fill = false, device = false;
     std::optional<int> frame;
   };
   auto a = std::make_shared<Arguments>();
@@ -139,9 +152,15 @@ void add_info(CLI::App& app, Action& action) {
   verb->add_option("PATH", a->path, "a file, a run's folder or asset:NAME");
   verb->add_flag("--json", a->json, "print JSON");
   CLI::Option* fill = verb->add_flag("--fill", a->fill, "of a run: how full its containers are");
+  verb->add_flag("--device", a->device, "only which GPU `--backend cuda` would use; exit code 1 where there is none")
+      ->excludes(fill);
   verb->add_option("--frame", a->frame, "with --fill: that frame, not the last")->needs(fill);
   verb->callback([a, &action] {
     action = [a] {
+      if (a->device) {
+        if (!a->path.empty()) fail_input("--device is of this machine; name no {}", a->path);
+        return print_device(a->json);
+      }
       if (a->path.empty()) {
         if (a->fill) fail_input("--fill is of a run's folder; name one");
         return print_program(a->json);

@@ -30,10 +30,12 @@
 namespace dreampm {
 
 struct SimulationOptions {
-  std::string backend = "cpu";  ///< cpu: fast, in float; reference: plain loops, in double
-  std::string isa = "auto";     ///< instruction set of the cpu backend, which decides the bits; auto: the best one
-  int threads = 0;              ///< most threads that a step uses; 0: all cores. Bits do not depend on it
-  Host* host = nullptr;         ///< null: lines go to stderr, and an interrupt of the process stops
+  /// cpu: fast, in float; reference: plain loops, in double; cuda: particles on an NVIDIA GPU, in
+  /// float (docs/guide/gpu.md).
+  std::string backend = "cpu";
+  std::string isa = "auto";  ///< instruction set of the cpu backend, which decides the bits; auto: the best one
+  int threads = 0;           ///< most threads that a step uses; 0: all cores. Bits do not depend on it
+  Host* host = nullptr;      ///< null: lines go to stderr, and an interrupt of the process stops
 };
 
 /// The whole state of a simulation in memory. Immutable, cheap to copy, safe to share between
@@ -116,7 +118,7 @@ class Simulation {
 
   const Scene& scene() const;  ///< with all edits so far
   Names names() const;
-  std::string backend() const;  ///< cpu or reference
+  std::string backend() const;  ///< as in SimulationOptions
   std::string isa() const;      ///< the instruction set that it computes by: avx2, baseline, ...
   int threads() const;          ///< most threads that a step uses
   /// Sums over all matter. Looks at all particles.

@@ -110,7 +110,7 @@ constexpr const char* about_simulation =
 
 constexpr const char* about_init =
     "Fills the bodies with particles.\n\n"
-    "backend:  'cpu': fast, in float; 'reference': plain loops, in double.\n"
+    "backend:  'cpu': fast, in float; 'reference': plain loops, in double; 'cuda': particles on an NVIDIA GPU.\n"
     "isa:      instruction set of the cpu backend, which decides the bits; 'auto': the best one.\n"
     "threads:  that a step uses at most; 0: all cores. Bits do not depend on it.";
 

@@ -33,6 +33,8 @@ std::vector<std::string> backend_names() {
   return names;
 }
 
+std::vector<std::string> backends_here() { return backend_names(); }
+
 AnyBackend make_backend(std::string_view name, std::string_view isa) {
   for (const BackendInfo& b : table)
     if (b.name == name) return b.make(isa);

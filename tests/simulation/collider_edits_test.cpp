@@ -39,7 +39,7 @@ std::string refusal(const std::function<void()>& edit) {
 }
 
 TEST(ColliderEdits, ARigidBodyThatComesInIsTheSameAsOneOfTheScene) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     Simulation from_scene(pool("rigid: {crate: {shape: {box: {size: [0.12, 0.12, 0.12]}}, density: 400, position: "
                                "[0.2, 0.3, 0.2], spin: [0, 1, 0]}}\n"),
                           quiet(1, backend)),
@@ -73,7 +73,7 @@ TEST(ColliderEdits, ACrateFloatsAndABrickSinks) {
 }
 
 TEST(ColliderEdits, GiveTheSameBitsForAnyNumberOfThreadsAndAfterASnapshot) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     std::uint64_t one = 0;
     for (const int threads : {1, 3}) {
       Simulation s(

@@ -29,7 +29,7 @@ TEST(Edits, GiveTheSameBitsForAnyNumberOfThreads) {
 }
 
 TEST(Edits, GiveTheSameBitsAfterASnapshot) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     Simulation straight(dam_and_jelly(), quiet(2, backend)), restored(dam_and_jelly(), quiet(2, backend));
     script(straight, [](int) {});
     // At steps with an edit that has not acted yet, too.
@@ -65,7 +65,7 @@ Simulation pressed_cube(const std::string& backend, const std::string& transfer)
 }
 
 TEST(Edits, NoForceOfTheOldLawIsLeft) {
-  for (const std::string& backend : backend_names())
+  for (const std::string& backend : backends_here())
     for (const char* transfer : {"apic", "asflip"}) {
       Simulation s = pressed_cube(backend, transfer);
       const Snapshot pressed = s.snapshot();
@@ -326,7 +326,7 @@ TEST(Edits, StepsInOneCallGiveWhatSingleStepsGive) {
 }
 
 TEST(Edits, AMaterialMoreFillsBodiesAndGoesWithASnapshot) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     Simulation s(dam_and_jelly(), quiet(1, backend));
     s.advance_to(0.01);
     const Snapshot before = s.snapshot();

@@ -77,7 +77,7 @@ TEST(Model, EditsReadNoFile) {
 }
 
 TEST(Model, AColliderThatComesInMovesAsItSays) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     Simulation s(dam_and_jelly(), quiet(1, backend));
     s.advance_to(0.02);
     model::Collider lift{"lift", Shape::box({0.1, 0.17, 0.02}, {0.2, 0.18, 0.14})};

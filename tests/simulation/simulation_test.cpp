@@ -197,7 +197,7 @@ TEST(Simulation, AnObserverThatThrowsLeavesTheStepWhole) {
 }
 
 TEST(Simulation, GoesBackToASnapshotBitByBit) {
-  for (const std::string& backend : backend_names()) {
+  for (const std::string& backend : backends_here()) {
     Simulation simulation(dam_and_jelly("asflip"), quiet(1, backend));
     simulation.advance_to(0.015);
     const Snapshot then = simulation.snapshot();

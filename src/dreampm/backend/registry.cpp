@@ -3,6 +3,8 @@
 #include <fmt/ranges.h>
 
 #include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/gpu/cuda/cuda.h"
+#include "dreampm/backend/gpu/gpu.h"
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/base/error.h"
 
@@ -13,6 +15,12 @@ constexpr BackendInfo table[] = {
     {"cpu", "fast, in float", [](std::string_view isa) -> AnyBackend { return make_cpu_backend(isa); }},
     {"reference", "plain loops in the order of the papers, in double",
      [](std::string_view) -> AnyBackend { return make_reference_backend<double>(); }},
+    {"cuda", "one NVIDIA GPU, in float",
+     [](std::string_view) -> AnyBackend { return make_gpu_backend("cuda", gpu::make_cuda_device()); },
+     [] {
+       const gpu::CudaState state = gpu::find_cuda();
+       return state.found ? std::string() : state.text;
+     }},
 };
 
 }  // namespace
@@ -22,6 +30,13 @@ std::span<const BackendInfo> backends() { return table; }
 std::vector<std::string> backend_names() {
   std::vector<std::string> names;
   for (const BackendInfo& b : backends()) names.emplace_back(b.name);
+  return names;
+}
+
+std::vector<std::string> backends_here() {
+  std::vector<std::string> names;
+  for (const BackendInfo& b : backends())
+    if (!b.why_not || b.why_not().empty()) names.emplace_back(b.name);
   return names;
 }
 

@@ -19,11 +19,15 @@ struct BackendInfo {
   std::string_view about;  ///< a few words
   /// `isa`: an instruction set that it knows, or "auto". Throws InputError for another.
   AnyBackend (*make)(std::string_view isa);
+  /// The reason why this machine cannot run it, or an empty text; null where every machine can.
+  std::string (*why_not)() = nullptr;
 };
 
 /// All of them, the default first.
 std::span<const BackendInfo> backends();
 std::vector<std::string> backend_names();
+/// Those that this machine can run.
+std::vector<std::string> backends_here();
 /// The backend of that name; an empty name means the default. Throws InputError with the names that
 /// there are.
 AnyBackend make_backend(std::string_view name, std::string_view isa = "auto");

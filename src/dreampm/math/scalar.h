@@ -9,7 +9,7 @@
 
 // Marks what runs per particle or node: always inlined, so that a kernel object of one instruction
 // set exports nothing. Where a device compiler reads it, it runs there too.
-#if defined(__CUDA__) && defined(__clang__)
+#if (defined(__CUDA__) || defined(__HIP__)) && defined(__clang__)
 #define DM_FN __attribute__((host)) __attribute__((device)) __attribute__((always_inline)) inline
 #elif defined(__CUDACC__)
 #define DM_FN __host__ __device__ __forceinline__

@@ -14,8 +14,10 @@ namespace dreampm {
 
 template <class... M>
 struct MaterialList {
+#ifndef __CUDACC__  // nvcc takes it for no constant
   static_assert((has_right_sliders(M::info.params) && ...),
                 "a slider of a material's table beyond its range, or one that needs what is no switch");
+#endif
   static constexpr int size = sizeof...(M);
   /// Calls f.template operator()<M>() for each material in order.
   template <class F>

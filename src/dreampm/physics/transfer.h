@@ -15,8 +15,8 @@ struct Stencil {
   R base[3], t[3];
   R w[3][3];
 
-  int node(int a) const { return static_cast<int>(base[a]); }
-  R weight(int i, int j, int k) const { return w[0][i] * w[1][j] * w[2][k]; }
+  DM_FN int node(int a) const { return static_cast<int>(base[a]); }
+  DM_FN R weight(int i, int j, int k) const { return w[0][i] * w[1][j] * w[2][k]; }
 };
 
 /// `u`: position in cells minus 1/2 on each axis, |u| small. A particle halfway between two
@@ -272,18 +272,26 @@ DM_FN void spread_rows(const Row& row, const Row& slope_x, const Row& slope_y, c
   }
 }
 
+/// Calls add(i, j, k, term, w) for the nodes of the stencil in turn: what the node gets is term w,
+/// and in sum w_i (q + sum_a slope[a] (x_i - x_p)_a).
+template <class N, class R, class Add>
+DM_FN void scatter_terms(const Stencil<R>& s, const N& q, const N (&slope)[3], const Add& add) {
+  const N middle = at_middle(q, slope, s.t);
+  for (int k = 0; k < 3; ++k) {
+    const N value = k == 0 ? middle - slope[2] : k == 1 ? middle : middle + slope[2];
+    spread_rows(value * s.w[2][k], slope[0] * s.w[2][k], slope[1] * s.w[2][k],
+                [&](int i, int j, const N& row) { add(i, j, k, row, s.w[0][i] * s.w[1][j]); });
+  }
+}
+
 /// Adds w (q + sum_a slope[a] (x_i - x_p)_a) to every node of the stencil: `node(i, j, k)`,
 /// references.
 template <class N, class R, class NodeAt>
 DM_FN void scatter(const Stencil<R>& s, const N& q, const N (&slope)[3], const NodeAt& node) {
-  const N middle = at_middle(q, slope, s.t);
-  for (int k = 0; k < 3; ++k) {
-    const N value = k == 0 ? middle - slope[2] : k == 1 ? middle : middle + slope[2];
-    spread_rows(value * s.w[2][k], slope[0] * s.w[2][k], slope[1] * s.w[2][k], [&](int i, int j, const N& row) {
-      N& n = node(i, j, k);
-      n = mul_add(row, s.w[0][i] * s.w[1][j], n);
-    });
-  }
+  scatter_terms(s, q, slope, [&](int i, int j, int k, const N& term, const R& w) {
+    N& n = node(i, j, k);
+    n = mul_add(term, w, n);
+  });
 }
 
 /// C = 4 sum w v (x_i - x_p)^T / dx [1/s], from moments in cells and velocities in m/s.

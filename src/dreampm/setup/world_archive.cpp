@@ -97,6 +97,10 @@ class WorldWriter {
   void put(const std::string& name, const std::vector<Vec3i>& blocks) { to_.add(name, flat(blocks)); }
   void put(const std::string& name, const BlockList& blocks) { to_.add(name, flat(blocks.all())); }
   void put(const std::string& name, const std::vector<std::uint32_t>& numbers) { to_.add(name, numbers); }
+  template <std::size_t count>
+  void put(const std::string& name, const std::array<double, count>& numbers) {
+    to_.add(name, std::vector<double>(numbers.begin(), numbers.end()));
+  }
   void put(const std::string& name, const LargeVector<R>& numbers) { to_.add(name, std::span<const R>(numbers)); }
   void put(const std::string& name, const Nodes<R>& nodes) {
     constexpr std::size_t each = sizeof(Node<R>) / sizeof(R);
@@ -203,6 +207,11 @@ class WorldReader {
   void get(const std::string& name, LargeVector<R>& numbers) {
     const auto stored_ones = from_.read<R>(name);
     numbers.assign(stored_ones.begin(), stored_ones.end());
+  }
+  template <std::size_t count>
+  void get(const std::string& name, std::array<double, count>& numbers) {
+    const auto stored_ones = from_.read<double>(name, count);
+    std::copy(stored_ones.begin(), stored_ones.end(), numbers.begin());
   }
   void get(const std::string& name, Limiter& limiter) { limiter = archived_limiter(from_, name); }
   void get(const std::string& name, std::vector<Vec3i>& blocks) {

@@ -114,8 +114,12 @@ struct World {
   double viscosity = 0;            ///< m^2/s, largest kinematic viscosity of the last pass
   double kept_kinetic_energy = 0;  ///< J, of sets that keep velocities, in the last pass; reported, not state
   std::uint64_t left = 0;          ///< particles that left through open walls, in all
-  double node_speed = 0;           ///< m/s, largest of this step's nodes; not state: every step finds it anew
-  double dt_before = 0;            ///< s, of the last step of a projection; 0 before the first
+  /// The largest speed [m/s], mass of a node [kg], volume ratio [1] and viscosity [m^2/s] of what
+  /// the last pass gave to the nodes; only of backends that add whole numbers there, whose units
+  /// follow from it.
+  std::array<double, 4> scatter_bounds{};
+  double node_speed = 0;  ///< m/s, largest of this step's nodes; not state: every step finds it anew
+  double dt_before = 0;   ///< s, of the last step of a projection; 0 before the first
   /// Pa, of the cells of grid.blocks, a cell by its node of lowest coordinates; only of a
   /// projection, whose next solve begins from it.
   LargeVector<R> cell_pressure;

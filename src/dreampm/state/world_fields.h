@@ -90,8 +90,8 @@ auto fields_of(W& world) {
   using namespace field_use;
   auto& [step, frame, time, dt_next, dt_limiter, kept_for, viscous_stages, dx, origin, low, high, walls, periodic,
          gravity, gravity_keys, fields, settings, sets, particle_blocks, grid, colliders, rigid, collision, emitters,
-         sinks, emitted_until, arrivals, next_id, drift, wave_speed, viscosity, kept_kinetic_energy, left, node_speed,
-         dt_before, cell_pressure] = world;
+         sinks, emitted_until, arrivals, next_id, drift, wave_speed, viscosity, kept_kinetic_energy, left,
+         scatter_bounds, node_speed, dt_before, cell_pressure] = world;
   auto& [solver, fps, cfl, fixed_dt, dt_max, sub_cycles, damping, keep_inside, surface_contact] = settings;
   return std::tuple{entry<state>("step", step),
                     entry<state>("frame", frame),
@@ -123,6 +123,7 @@ auto fields_of(W& world) {
                     entry<state>("viscosity", viscosity),
                     entry<sparse(reported)>("keeping", kept_kinetic_energy),
                     entry<state>("left", left),
+                    entry<sparse(state)>("scatter_bounds", scatter_bounds),
                     entry<setup_and_state>("colliders", colliders),
                     entry<setup>("rigid", rigid),
                     entry<setup_unhashed>("collision", collision),

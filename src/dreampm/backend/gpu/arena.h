@@ -1,0 +1,87 @@
+// The nodes that the particles of one block reach, in a device's memory: 8^3 of them, two blocks of
+// the grid along each axis. Particles add to whole numbers in place of floats: these have no order,
+// so that the sums are the same whichever thread comes first, and multiprocessors add them at full
+// rate.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/math/scalar.h"
+#include "dreampm/state/node.h"
+
+namespace dreampm::gpu {
+
+inline constexpr int arena_width = 2 * block_width;
+inline constexpr int arena_nodes = arena_width * arena_width * arena_width;
+/// Shared memory has 32 banks. Rows lie 8 words apart and planes 68, so that the bank of a
+/// stencil's first node is the bank of all 27 but for one shift: threads whose stencils begin in 32
+/// different banks never wait for each other.
+inline constexpr int arena_plane = 68, arena_room = arena_width * arena_plane;
+
+/// The place of a node in the memory of a block of threads; coordinates from 0 to 7.
+constexpr int place_in_arena(int x, int y, int z) { return x * arena_plane + y * arena_width + z; }
+
+/// A node of an arena by number, as arenas lie in memory.
+struct ArenaNode {
+  int x, y, z;
+  explicit DM_FN ArenaNode(int n) : x(n / (arena_width * arena_width)), y(n / arena_width % arena_width), z(n % arena_width) {}
+  DM_FN int place() const { return place_in_arena(x, y, z); }
+  /// Which of the eight blocks of the grid holds it, and its number there.
+  DM_FN int corner() const { return (x / block_width * 2 + y / block_width) * 2 + z / block_width; }
+  DM_FN int in_block() const { return node_index(x % block_width, y % block_width, z % block_width); }
+};
+/// The number of node `n` of corner block `corner` in the arena.
+DM_FN int number_in_arena(int corner, int n) {
+  const int x = corner / 4 * block_width + n / (block_width * block_width), y = corner / 2 % 2 * block_width + n / block_width % block_width,
+            z = corner % 2 * block_width + n % block_width;
+  return (x * arena_width + y) * arena_width + z;
+}
+
+/// Sums at a node, in units of ScatterUnits.
+struct alignas(16) NodeCounts {
+  std::int32_t x, y, z, m;
+};
+
+/// What the matter of a block may put on one node at most, per field: mass [kg] and rest volume
+/// over dx^3 [1]. No weight is above 0.75^3.
+struct BlockLoad {
+  float mass[2], volume;
+};
+inline constexpr double largest_weight = 0.75 * 0.75 * 0.75;
+
+/// Bounds of what particles scatter in a pass.
+struct ScatterBounds {
+  float speed;         ///< m/s: largest momentum at a node of the stencil over the mass, along an axis
+  float mass;          ///< kg: most at a node of an arena
+  float volume_ratio;  ///< of solids
+  float viscosity;     ///< m^2/s
+};
+
+/// How many counts are 1 kg m/s and so on: powers of two, so that no digit is lost to the scale.
+struct ScatterUnits {
+  float momentum, mass;
+};
+/// The largest power of two whose product with `most` is at most 2^30; `most` >= 0.
+DM_FN float counts_per_unit(float most) {
+  return exp2_int(29.0f - exponent_of(max(most, 1e-25f)));
+}
+/// The larger of each.
+DM_FN ScatterBounds largest(const ScatterBounds& a, const ScatterBounds& b) {
+  return {max(a.speed, b.speed), max(a.mass, b.mass), max(a.volume_ratio, b.volume_ratio), max(a.viscosity, b.viscosity)};
+}
+/// True if nothing that was found is beyond what was assumed.
+DM_FN bool within(const ScatterBounds& found, const ScatterBounds& assumed) {
+  return !(found.speed > assumed.speed) && !(found.mass > assumed.mass) && !(found.volume_ratio > assumed.volume_ratio) &&
+         !(found.viscosity > assumed.viscosity);
+}
+
+/// Units of momentum and mass of a field. That of mass fits whatever comes: so the most that comes
+/// is known, and with it whether momentum fitted.
+DM_FN ScatterUnits field_units(const BlockLoad& load, int field, const ScatterBounds& bounds) {
+  return {counts_per_unit(min(load.mass[field], bounds.mass) * bounds.speed), counts_per_unit(load.mass[field])};
+}
+/// Units of the mixture: of volumes, in place of a momentum, and of viscosity times mass.
+DM_FN ScatterUnits mixture_units(const BlockLoad& load, const ScatterBounds& bounds) {
+  return {counts_per_unit(load.volume * max(bounds.volume_ratio, 1.0f)), counts_per_unit(load.mass[0] * bounds.viscosity)};
+}
+
+}  // namespace dreampm::gpu

@@ -1,0 +1,70 @@
+// Threads that work together on one kernel: a block of them. A kernel is a struct that is its own
+// arguments:
+//
+//   struct Kernel {
+//     static constexpr int threads = 128;          // of a block
+//     struct Shared { ... };                       // memory of a block
+//     template <class Block>
+//     DM_FN void operator()(Block& block, Shared& shared) const {
+//       block.each_thread([&](int t) { ... });     // every thread once, then all wait for each other
+//     }
+//   };
+//
+// On a device each_thread() is what one thread does, and a barrier (gpu/device_block.h). Here it is
+// a loop over the threads, so that the same kernels run on any machine and tests see their bits.
+// What lies between two calls of each_thread() every thread does alike. The order of the threads
+// may be turned around: a kernel whose results depend on it has a race.
+#pragma once
+#include <array>
+#include <cstdint>
+
+#include "dreampm/math/scalar.h"
+
+namespace dreampm::gpu {
+
+/// The order in which the threads of a block, and the blocks of a launch, come on the host.
+enum class ThreadOrder { rising, falling, scattered };
+
+/// The place of number `i` of `count` in that order.
+constexpr int place_in_order(ThreadOrder order, int i, int count) {
+  if (order == ThreadOrder::falling) return count - 1 - i;
+  if (order == ThreadOrder::rising) return i;
+  // A multiplier without a common divisor with the count visits all.
+  int step = 7;
+  while (count % step == 0) step += 4;
+  return static_cast<int>((static_cast<std::int64_t>(i) * step + 3) % count);
+}
+
+/// A block of threads on the host.
+template <int threads>
+class HostBlock {
+ public:
+  HostBlock(int index, ThreadOrder order) : index_(index), order_(order) {}
+
+  /// The number of this block in the launch.
+  int index() const { return index_; }
+  template <class Body>
+  void each_thread(const Body& body) const {
+    for (int i = 0; i < threads; ++i) body(place_in_order(order_, i, threads));
+  }
+  /// One value for each thread, that it keeps from one each_thread() to the next.
+  template <class T>
+  class PerThread {
+   public:
+    T& operator[](int thread) { return of_[static_cast<std::size_t>(thread)]; }
+
+   private:
+    std::array<T, threads> of_{};
+  };
+
+  /// Adds to a number that other threads of the block add to.
+  static void add(std::int32_t& to, std::int32_t value) { to += value; }
+  /// The nearest whole number, halves to even.
+  static std::int32_t nearest(float value) { return static_cast<std::int32_t>(__builtin_lrintf(value)); }
+
+ private:
+  int index_;
+  ThreadOrder order_;
+};
+
+}  // namespace dreampm::gpu

@@ -1,0 +1,78 @@
+// libdreampm_cuda.so: the kernels of gpu/kernels.h, and the calls of the CUDA runtime that gpu/device.h asks for. Built by
+// tools/build_cuda.
+#include "dreampm/backend/gpu/cuda/cuda_library.h"
+
+#include <cuda_runtime.h>
+
+#include "dreampm/backend/gpu/device_block.h"
+#include "dreampm/backend/gpu/kernels.h"
+
+namespace dreampm::gpu {
+namespace {
+
+using Launch = void (*)(const void* arguments, int blocks, cudaStream_t stream);
+
+template <class K>
+void launch_kernel(const void* arguments, int blocks, cudaStream_t stream) {
+  run<K><<<blocks, K::threads, 0, stream>>>(*static_cast<const K*>(arguments));
+}
+
+template <class... K>
+const Launch* launches_of(KernelList<K...>) {
+  static constexpr Launch all[] = {&launch_kernel<K>...};
+  return all;
+}
+
+struct Opened {
+  int number;
+  cudaStream_t stream;
+};
+Opened& opened(void* device) { return *static_cast<Opened*>(device); }
+
+const char* message(cudaError_t error) { return error == cudaSuccess ? nullptr : cudaGetErrorString(error); }
+
+const char* open(int number, void** device) {
+  int count = 0;
+  if (const cudaError_t error = cudaGetDeviceCount(&count)) return message(error);
+  if (number < 0 || number >= count) return "there is no device of that number";
+  Opened one{number, nullptr};
+  if (const cudaError_t error = cudaSetDevice(number)) return message(error);
+  if (const cudaError_t error = cudaStreamCreate(&one.stream)) return message(error);
+  *device = new Opened(one);
+  return nullptr;
+}
+void close(void* device) {
+  cudaStreamDestroy(opened(device).stream);
+  delete &opened(device);
+}
+const char* about(void* device, const char** name, int* major, int* minor, std::size_t* memory) {
+  static cudaDeviceProp facts;
+  if (const cudaError_t error = cudaGetDeviceProperties(&facts, opened(device).number)) return message(error);
+  *name = facts.name, *major = facts.major, *minor = facts.minor, *memory = facts.totalGlobalMem;
+  return nullptr;
+}
+const char* memory(void*, std::size_t* free, std::size_t* all) { return message(cudaMemGetInfo(free, all)); }
+const char* allocate(void*, std::size_t bytes, void** memory) { return message(cudaMalloc(memory, bytes)); }
+void release(void*, void* memory) { cudaFree(memory); }
+const char* upload(void* device, void* to, const void* from, std::size_t bytes) {
+  return message(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, opened(device).stream));
+}
+const char* download(void* device, void* to, const void* from, std::size_t bytes) {
+  const cudaStream_t stream = opened(device).stream;
+  if (const cudaError_t error = cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream)) return message(error);
+  return message(cudaStreamSynchronize(stream));
+}
+const char* launch(void* device, int kernel, const void* arguments, int blocks) {
+  launches_of(Kernels{})[kernel](arguments, blocks, opened(device).stream);
+  return message(cudaGetLastError());
+}
+
+constexpr CudaLibrary library{DM_VERSION, Kernels::size, open,   close,    about, memory,
+                              allocate,        release,       upload, download, launch};
+
+}  // namespace
+}  // namespace dreampm::gpu
+
+extern "C" __attribute__((visibility("default"))) const dreampm::gpu::CudaLibrary* dreampm_cuda_library() {
+  return &dreampm::gpu::library;
+}

@@ -1,0 +1,76 @@
+// A block of threads on a device. Read by compilers of device code alone: nvcc, and clang for CUDA
+// and for HIP, which need no headers of a toolkit for it.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/math/scalar.h"
+
+#ifdef __clang__
+#define DM_KERNEL __attribute__((global))
+#define DM_SHARED __attribute__((shared))
+#define DM_DEVICE __attribute__((device)) __attribute__((always_inline)) inline
+#define DM_BOUNDS(threads) __attribute__((launch_bounds(threads)))
+#else
+#define DM_KERNEL __global__
+#define DM_SHARED __shared__
+#define DM_DEVICE __device__ __forceinline__
+#define DM_BOUNDS(threads) __launch_bounds__(threads)
+#endif
+
+namespace dreampm::gpu {
+
+// What the compilers name differently.
+#if defined(__HIP__)
+DM_DEVICE int thread_number() { return static_cast<int>(__builtin_amdgcn_workitem_id_x()); }
+DM_DEVICE int block_number() { return static_cast<int>(__builtin_amdgcn_workgroup_id_x()); }
+DM_DEVICE void wait_for_all() {
+  __builtin_amdgcn_fence(__ATOMIC_RELEASE, "workgroup");
+  __builtin_amdgcn_s_barrier();
+  __builtin_amdgcn_fence(__ATOMIC_ACQUIRE, "workgroup");
+}
+DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { __atomic_fetch_add(&to, value, __ATOMIC_RELAXED); }
+DM_DEVICE std::int32_t to_nearest(float value) { return static_cast<std::int32_t>(__builtin_rintf(value)); }
+#elif defined(__clang__)
+DM_DEVICE int thread_number() { return __nvvm_read_ptx_sreg_tid_x(); }
+DM_DEVICE int block_number() { return __nvvm_read_ptx_sreg_ctaid_x(); }
+DM_DEVICE void wait_for_all() { __syncthreads(); }
+DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { __atomic_fetch_add(&to, value, __ATOMIC_RELAXED); }
+DM_DEVICE std::int32_t to_nearest(float value) { return __nvvm_f2i_rn(value); }
+#else
+DM_DEVICE int thread_number() { return static_cast<int>(threadIdx.x); }
+DM_DEVICE int block_number() { return static_cast<int>(blockIdx.x); }
+DM_DEVICE void wait_for_all() { __syncthreads(); }
+DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { atomicAdd(&to, value); }
+DM_DEVICE std::int32_t to_nearest(float value) { return __float2int_rn(value); }
+#endif
+
+/// As HostBlock.
+class DeviceBlock {
+ public:
+  DM_DEVICE int index() const { return block_number(); }
+  template <class Body>
+  DM_DEVICE void each_thread(const Body& body) const {
+    body(thread_number());
+    wait_for_all();
+  }
+  template <class T>
+  class PerThread {
+   public:
+    DM_DEVICE T& operator[](int) { return own_; }
+
+   private:
+    T own_{};
+  };
+  static DM_DEVICE void add(std::int32_t& to, std::int32_t value) { add_to_shared(to, value); }
+  static DM_DEVICE std::int32_t nearest(float value) { return to_nearest(value); }
+};
+
+/// The entry of a kernel.
+template <class K>
+DM_KERNEL void DM_BOUNDS(K::threads) run(const K kernel) {
+  DM_SHARED typename K::Shared shared;
+  DeviceBlock block;
+  kernel(block, shared);
+}
+
+}  // namespace dreampm::gpu

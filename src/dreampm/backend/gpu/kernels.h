@@ -1,0 +1,54 @@
+// The kernels of the gpu backends, one list: a number each, by which a device launches them.
+#pragma once
+#include <type_traits>
+
+#include "dreampm/backend/gpu/grid_sum.h"
+#include "dreampm/backend/gpu/viscous_pass.h"
+
+namespace dreampm::gpu {
+
+template <class... K>
+struct KernelList {
+  static_assert((std::is_trivially_copyable_v<K> && ...), "a kernel is copied to the device as it stands");
+  static constexpr int size = sizeof...(K);
+  /// The number of a kernel.
+  template <class One>
+  static constexpr int number_of() {
+    int n = 0;
+    static_cast<void>(((std::is_same_v<One, K> || (++n, false)) || ...));
+    static_assert((std::is_same_v<One, K> || ...), "no kernel of the list");
+    return n;
+  }
+  /// Calls f.template operator()<K>() for each in order.
+  template <class F>
+  static constexpr void for_each(F&& f) {
+    (f.template operator()<K>(), ...);
+  }
+};
+
+template <class... L>
+struct JoinLists;
+template <class... A>
+struct JoinLists<KernelList<A...>> {
+  using Type = KernelList<A...>;
+};
+template <class... A, class... B, class... Rest>
+struct JoinLists<KernelList<A...>, KernelList<B...>, Rest...> {
+  using Type = typename JoinLists<KernelList<A..., B...>, Rest...>::Type;
+};
+
+/// The kernels of one material.
+template <class M>
+struct MaterialKernels {
+  using Steps = KernelList<Pass<M, false, false>, Pass<M, false, true>>;
+  using Relaxing = std::conditional_t<VolumeRelaxed<M>, KernelList<Pass<M, true, false>, Pass<M, true, true>>, KernelList<>>;
+  using Stages = std::conditional_t<Viscous<M>, KernelList<ViscousPass<M>>, KernelList<>>;
+  using Type = typename JoinLists<Steps, Relaxing, Stages>::Type;
+};
+template <class... M>
+auto kernels_of(MaterialList<M...>) ->
+    typename JoinLists<KernelList<AddUp, SumArenas, SpeedPass>, typename MaterialKernels<M>::Type...>::Type;
+
+using Kernels = decltype(kernels_of(Materials{}));
+
+}  // namespace dreampm::gpu

@@ -1,0 +1,127 @@
+// Sums and bounds over the particles of a pass on a device, from threads to blocks to all of a set.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/backend/gpu/arena.h"
+#include "dreampm/physics/particle.h"
+
+namespace dreampm::gpu {
+
+/// Of the particles of one thread, and of a block's threads: a few hundred, of which floats lose
+/// nothing that a ledger would see. Without constructors, as it lies in the memory of a block.
+struct ParticleSums {
+  float wave_speed, viscosity, j_min, j_max;
+  float kinetic, viscous, plastic, relaxed;  ///< by mass [J/kg], and by volume at rest [J/m^3]
+  float swollen;                             ///< by volume at rest [1]
+  float shifted[3], turned[3];               ///< cells, and cells m/s
+  ScatterBounds scattered;
+  std::uint32_t pushed;
+  bool finite;
+
+  static DM_FN ParticleSums none() {
+    return {0, 0, 1e30f, -1e30f, 0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, true};
+  }
+
+  /// Adds one particle, now at `u`.
+  template <class M>
+  DM_FN void add(const SetStep<float>& step, const BlockWalls<float>& walls, const G2PResult<float>& g,
+                 const P2GTerms<float>& s, float j, const StressResponse<float>& response, const Vec3<float>& u,
+                 bool was_pushed) {
+    wave_speed = max(response.sound_speed, wave_speed);
+    viscosity = max(response.kinematic_viscosity, viscosity);
+    j_min = min(j, j_min), j_max = max(j, j_max);
+    if (was_pushed) ++pushed;
+    kinetic += kinetic_energy(g, s, step);
+    viscous += response.dissipation.viscous;
+    plastic += response.dissipation.plastic;
+    relaxed += response.dissipation.relaxed;
+    bool shifts = walls.colliders;
+    if constexpr (VolumeRelaxed<M>)
+      if (measures<M>(step.volume_relaxation)) {
+        shifts = true;
+        swollen += s.swollen;
+      }
+    if (shifts) {
+      const Vec3<float> turn = cross(s.shifted, s.own_velocity);
+      for (int a = 0; a < 3; ++a) shifted[a] += s.shifted[a], turned[a] += turn[a];
+    }
+    const float all = u.x + u.y + u.z + j + response.sound_speed;
+    finite = finite && all - all == 0;
+  }
+
+  DM_FN void add(const ParticleSums& b) {
+    wave_speed = max(wave_speed, b.wave_speed), viscosity = max(viscosity, b.viscosity);
+    j_min = min(j_min, b.j_min), j_max = max(j_max, b.j_max);
+    kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed, swollen += b.swollen;
+    for (int a = 0; a < 3; ++a) shifted[a] += b.shifted[a], turned[a] += b.turned[a];
+    scattered = largest(scattered, b.scattered);
+    pushed += b.pushed;
+    finite = finite && b.finite;
+  }
+};
+
+/// Of a block of particles, and of all of a set.
+struct BlockSums {
+  float wave_speed, viscosity, j_min, j_max;
+  double kinetic, viscous, plastic, relaxed, swollen;
+  double shifted[3], turned[3];
+  ScatterBounds scattered;
+  std::uint32_t pushed;
+  bool finite;
+
+  static DM_FN BlockSums none() { return of(ParticleSums::none()); }
+  static DM_FN BlockSums of(const ParticleSums& s) {
+    return {s.wave_speed,
+            s.viscosity,
+            s.j_min,
+            s.j_max,
+            s.kinetic,
+            s.viscous,
+            s.plastic,
+            s.relaxed,
+            s.swollen,
+            {s.shifted[0], s.shifted[1], s.shifted[2]},
+            {s.turned[0], s.turned[1], s.turned[2]},
+            s.scattered,
+            s.pushed,
+            s.finite};
+  }
+  DM_FN void add(const BlockSums& b) {
+    wave_speed = max(wave_speed, b.wave_speed), viscosity = max(viscosity, b.viscosity);
+    j_min = min(j_min, b.j_min), j_max = max(j_max, b.j_max);
+    kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed, swollen += b.swollen;
+    for (int a = 0; a < 3; ++a) shifted[a] += b.shifted[a], turned[a] += b.turned[a];
+    scattered = largest(scattered, b.scattered);
+    pushed += b.pushed;
+    finite = finite && b.finite;
+  }
+};
+
+/// Adds up the sums of `count` blocks, in an order that depends on nothing else.
+struct AddUp {
+  static constexpr int threads = 128;
+  struct Shared {
+    BlockSums sums[threads];
+  };
+  const BlockSums* from;
+  BlockSums* to;  ///< one
+  int count;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared& shared) const {
+    block.each_thread([&](int t) {
+      BlockSums sum = BlockSums::none();
+      for (int b = t; b < count; b += threads) sum.add(from[b]);
+      shared.sums[t] = sum;
+    });
+    for (int half = threads / 2; half > 0; half /= 2)
+      block.each_thread([&](int t) {
+        if (t < half) shared.sums[t].add(shared.sums[t + half]);
+      });
+    block.each_thread([&](int t) {
+      if (t == 0) *to = shared.sums[0];
+    });
+  }
+};
+
+}  // namespace dreampm::gpu

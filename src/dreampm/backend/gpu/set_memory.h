@@ -1,0 +1,152 @@
+// The arrays of a World in a device's memory.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/backend/gpu/device.h"
+#include "dreampm/backend/gpu/kernels.h"
+#include "dreampm/backend/motion.h"
+#include "dreampm/state/neighbors.h"
+
+namespace dreampm::gpu {
+
+/// The columns of the particles of a set.
+class SetColumns {
+ public:
+  explicit SetColumns(Device& device) : device_(&device) {
+    for (int a = 0; a < 3; ++a) u.emplace_back(device), own_velocity.emplace_back(device);
+  }
+  std::vector<Buffer<float>> u, own_velocity, state;
+
+  /// Makes all as long as those of `other`.
+  void fit(const SetColumns& other) {
+    fit(u, other.u), fit(own_velocity, other.own_velocity), fit(state, other.state);
+  }
+  /// As many columns of state as the World has.
+  void fit_state(std::size_t columns) {
+    while (state.size() < columns) state.emplace_back(*device_);
+    while (state.size() > columns) state.pop_back();
+  }
+  ParticleColumns pointers(bool own) const {
+    ParticleColumns to{};
+    for (std::size_t a = 0; a < 3; ++a) to.u[a] = u[a].data(), to.own_velocity[a] = own ? own_velocity[a].data() : nullptr;
+    for (std::size_t c = 0; c < state.size(); ++c) to.state[c] = state[c].data();
+    return to;
+  }
+
+ private:
+  void fit(std::vector<Buffer<float>>& to, const std::vector<Buffer<float>>& as) {
+    while (to.size() < as.size()) to.emplace_back(*device_);
+    while (to.size() > as.size()) to.pop_back();
+    for (std::size_t c = 0; c < as.size(); ++c) to[c].resize(as[c].size());
+  }
+  Device* device_;
+};
+
+/// A set: its particles as they are, room for what a pass makes of them, and what it looks at.
+class SetMemory {
+ public:
+  explicit SetMemory(Device& device) : now(device), next(device), block_start(device), velocity_(device), gradient_(device), energy_(device), volume_ratio_(device) {
+    for (int c = 0; c < 4; ++c) distance.emplace_back(device);
+  }
+  SetColumns now, next;
+  Buffer<std::uint32_t> block_start;
+  std::vector<Buffer<float>> distance;  ///< as PassInput::distance
+
+  void swap() { std::swap(now, next); }
+  void upload_position(const ParticleSet<float>& set) {
+    for (std::size_t a = 0; a < 3; ++a) now.u[a].upload(set.u[a]);
+    // A set without matter may have no starts yet.
+    if (set.block_start.empty())
+      return block_start.upload(std::vector<std::uint32_t>(1, 0));
+    block_start.upload(set.block_start);
+  }
+  void upload_state(const ParticleSet<float>& set) {
+    now.fit_state(set.state.size());
+    for (std::size_t c = 0; c < set.state.size(); ++c) now.state[c].upload(set.state[c]);
+    for (std::size_t a = 0; a < 3; ++a) now.own_velocity[a].upload(set.own_velocity[a]);
+  }
+  void download_position(ParticleSet<float>& set) const {
+    for (std::size_t a = 0; a < 3; ++a) now.u[a].download(set.u[a]);
+  }
+  void download_state(ParticleSet<float>& set) const {
+    for (std::size_t c = 0; c < set.state.size(); ++c) now.state[c].download(set.state[c]);
+    for (std::size_t a = 0; a < 3; ++a) now.own_velocity[a].download(set.own_velocity[a]);
+  }
+
+  /// Makes a pass write its motion.
+  void output_to(PassOutput& out) {
+    const std::size_t n = now.u[0].size();
+    velocity_.resize(n), gradient_.resize(n), energy_.resize(n), volume_ratio_.resize(n);
+    out.velocity = n > 0 ? &velocity_.data()->x : nullptr, out.gradient = n > 0 ? gradient_.data()->m : nullptr;
+    out.energy = energy_.data(), out.volume_ratio = volume_ratio_.data();
+  }
+  void download_motion(Motion<float>::Set& to) const {
+    to.velocity.resize(velocity_.size()), to.gradient.resize(velocity_.size());
+    to.energy.resize(velocity_.size()), to.volume_ratio.resize(velocity_.size());
+    velocity_.download(to.velocity), gradient_.download(to.gradient);
+    energy_.download(to.energy), volume_ratio_.download(to.volume_ratio);
+  }
+
+ private:
+  Buffer<Vec3<float>> velocity_;
+  Buffer<Mat3<float>> gradient_;
+  Buffer<float> energy_, volume_ratio_;
+};
+
+/// For each block of the grid the arenas that hold its nodes, as SumArenas takes them: in the order
+/// of the blocks of particles, and of their corners.
+class SourceLists {
+ public:
+  explicit SourceLists(Device& device) : first(device), arena(device), corner(device) {}
+  Buffer<std::uint32_t> first;
+  Buffer<std::int32_t> arena, corner;
+
+  void upload(const std::vector<StencilBlocks>& reached, std::size_t grid_blocks) {
+    std::vector<std::uint32_t> begin(grid_blocks + 1, 0);
+    for (const StencilBlocks& blocks : reached)
+      for (const std::int32_t b : blocks)
+        if (b != BlockList::none) ++begin[static_cast<std::size_t>(b) + 1];
+    for (std::size_t b = 0; b < grid_blocks; ++b) begin[b + 1] += begin[b];
+    std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+    std::vector<std::int32_t> from(begin.back()), at(begin.back());
+    for (std::size_t b = 0; b < reached.size(); ++b)
+      for (std::size_t c = 0; c < reached[b].size(); ++c) {
+        if (reached[b][c] == BlockList::none) continue;
+        const std::uint32_t n = next[static_cast<std::size_t>(reached[b][c])]++;
+        from[n] = static_cast<std::int32_t>(b), at[n] = static_cast<std::int32_t>(c);
+      }
+    first.upload(begin), arena.upload(from), corner.upload(at);
+  }
+};
+
+/// All of a World.
+class Memory {
+ public:
+  explicit Memory(Device& device)
+      : sources(device), stencil_blocks(device), walls(device), loads(device), clearance(device), base(device), block_sums(device), totals(device), block_speeds(device), device_(&device) {
+    for (int f = 0; f < fields; ++f) nodes.emplace_back(device), arenas.emplace_back(device);
+  }
+  static constexpr int fields = 7;  ///< of the grid, that particles give to
+  std::vector<SetMemory> sets;
+  SourceLists sources;
+  Buffer<std::int32_t> stencil_blocks;
+  Buffer<BlockWalls<float>> walls;
+  Buffer<BlockLoad> loads;
+  Buffer<Node<float>> clearance, base;
+  std::vector<Buffer<Node<float>>> nodes;    ///< by field
+  std::vector<Buffer<NodeCounts>> arenas;    ///< by field
+  Buffer<BlockSums> block_sums, totals;
+  Buffer<float> block_speeds;
+
+  void resize_sets(std::size_t count) {
+    while (sets.size() < count) sets.emplace_back(*device_);
+    while (sets.size() > count) sets.pop_back();
+  }
+
+ private:
+  Device* device_;
+};
+
+}  // namespace dreampm::gpu

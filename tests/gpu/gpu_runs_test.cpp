@@ -1,0 +1,109 @@
+// Whole scenes by the kernels of a device, on the host, against the reference in double: everything
+// that a scene may hold. The ledger closes in each.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <string>
+
+#include <simulation/scenes.h>
+#include "dreampm/base/host.h"
+#include "dreampm/io/ledger.h"
+#include "dreampm/pipeline/simulate.h"
+#include "dreampm/scene/parse.h"
+
+namespace dreampm {
+namespace {
+using namespace test;
+namespace fs = std::filesystem;
+
+/// A scene of one kind of matter or surroundings, and how long it runs.
+struct Case {
+  const char* name;
+  const char* rest;  ///< of the scene's text, after its head
+  int frames = 6;
+  double apart = 0.03;  ///< of the kinetic energy and the number of particles
+};
+constexpr Case cases[] = {
+    {"honey, whose viscosity is sub-cycled", R"(
+materials: {honey: {type: newtonian, preset: honey, bulk_modulus: 1.0e5}}
+bodies: {drop: {material: honey, shape: {sphere: {radius: 0.05}, center: [0.12, 0.1, 0.08]}, velocity: [0, -1, 0]}}
+)"},
+    {"two liquids of two densities", R"(
+materials: {oil: {type: newtonian, density: 800}, water: {type: newtonian, density: 1000}}
+bodies:
+  above: {material: oil, shape: {box: {min: [0, 0.06, 0], max: [0.1, 0.12, 0.16]}}}
+  below: {material: water, shape: {box: {min: [0, 0, 0], max: [0.1, 0.06, 0.16]}}}
+)"},
+    {"jelly in water, which keeps velocities", R"(
+materials:
+  water: {type: newtonian, transfer: flip, flip_memory: 0.03}
+  jelly: {type: neo_hookean, density: 600, youngs_modulus: 2.0e4, poissons_ratio: 0.3, transfer: asflip}
+bodies:
+  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.06, 0.16]}}}
+  cube: {material: jelly, shape: {box: {min: [0.06, 0.08, 0.04], max: [0.14, 0.16, 0.12]}}, velocity: [1, -1, 0]}
+)"},
+    {"sand over a ball, and a plate that moves", R"(
+materials: {sand: {type: sand, youngs_modulus: 1.0e5}}
+bodies: {heap: {material: sand, shape: {box: {min: [0.04, 0.1, 0.04], max: [0.14, 0.18, 0.12]}}}}
+colliders:
+  ball: {shape: {sphere: {radius: 0.04}, center: [0.1, 0.04, 0.08]}, type: separate, friction: 0.4}
+  plate: {shape: {box: {size: [0.02, 0.14, 0.16]}, center: [0.2, 0.07, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
+)"},
+    {"a box that floats", R"(
+materials: {water: {type: newtonian}}
+bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}}
+rigid: {box: {shape: {box: {size: [0.08, 0.06, 0.08]}, center: [0.12, 0.11, 0.08]}, density: 500}}
+)"},
+    {"a tap, a drain and probes", R"(
+materials: {water: {type: newtonian}}
+emitters:
+  tap: {material: water, shape: {cylinder: {radius: 0.03, height: 0.02}, center: [0.12, 0.17, 0.08]}, velocity: [0, -1.5, 0], pool: 4000}
+sinks: {drain: {shape: {box: {min: [0.06, 0, 0], max: [0.18, 0.03, 0.16]}}}}
+probes:
+  push: {type: pressure, at: [0.12, 0, 0.08], normal: [0, 1, 0], radius: 0.05, rate: 120}
+  flow: {type: velocity, at: [0.12, 0.1, 0.08], radius: 0.05}
+)", 10, 0.06},  // a drain takes when particles are sorted, which nobody promises to be at the same step
+    {"snow that falls through a periodic box, in a wind", R"(
+materials: {snow: {type: snow}}
+bodies: {ball: {material: snow, shape: {sphere: {radius: 0.05}, center: [0.2, 0.12, 0.08]}, velocity: [2, -1, 0]}}
+fields: {wind: {type: wind, velocity: [3, 0, 0], coefficient: 2}}
+)"},
+};
+
+std::string text_of(const Case& one) {
+  const bool periodic = std::string(one.name).find("periodic") != std::string::npos;
+  return std::string("dreampm: 1\nname: case\nspace: {min: [0, 0, 0], max: [0.24, 0.2, 0.16], spacing: 0.0125") +
+         (periodic ? ", periodic: [x]" : "") + "}\ntime: {fps: 50, frames: " + std::to_string(one.frames) +
+         "}\n" + one.rest;
+}
+
+/// The last row of a run's ledger, which has to close.
+LedgerRow last_row(const Case& one, const std::string& backend) {
+  const auto parsed = scene::parse_scene_text(text_of(one), "case.yaml", {});
+  if (!parsed.ok()) throw std::runtime_error(parsed.text());
+  const fs::path folder = fs::path(DM_BINARY_DIR) / "test-files" / "gpu" / backend;
+  fs::remove_all(folder);
+  SimulateOptions options;
+  options.folder = folder, options.backend = backend, options.strict = true;
+  SilentHost host;
+  const HostScope scope(&host);
+  simulate(parsed.scene, {"case.yaml", {}}, options);
+  return read_ledger(folder / "ledger.csv").rows.back();
+}
+
+TEST(GpuRuns, FollowTheReferenceAndTheLedgerCloses) {
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.name);
+    const LedgerRow got = last_row(one, "gpu"), want = last_row(one, "reference");
+    std::printf("%s: %.0f particles, kinetic energy %.6g J, in the reference %.6g J\n", one.name, got.particles,
+                got.kinetic, want.kinetic);
+    EXPECT_GT(got.particles, 150);
+    EXPECT_NEAR(got.particles, want.particles, one.apart * want.particles);
+    EXPECT_NEAR(got.kinetic, want.kinetic, one.apart * want.kinetic);
+    EXPECT_NEAR(got.j_min, want.j_min, 0.02);
+  }
+}
+
+}  // namespace
+}  // namespace dreampm
