@@ -81,6 +81,8 @@ RgbImage beside(const RgbImage& a, const RgbImage& b, double gain) {
 
 std::vector<Comparison> compare_pictures(const fs::path& a, const fs::path& b, const fs::path& out, int first,
                                          int last) {
+  for (const fs::path& each : {a, b})
+    if (!fs::exists(each)) fail_input("{}: no such file or folder; give two runs or two pictures", each.string());
   if (fs::is_directory(a) != fs::is_directory(b))
     fail_input("{} and {} are a folder and a file; give two runs or two pictures", a.string(), b.string());
   if (!fs::is_directory(a))

@@ -76,7 +76,7 @@ Vec3f night(const Vec3f& d) {
 
 }  // namespace
 
-Environment read_environment(const model::Light& light) {
+Environment read_environment(const model::Light& light) try {
   Image image = read_exr_colors(light.environment);
   if (image.width != 2 * image.height)
     fail_input("{}: {} x {} pixels; an environment is twice as wide as high: longitude across, latitude down",
@@ -93,6 +93,8 @@ Environment read_environment(const model::Light& light) {
   }
   if (!(sum > 0)) fail_input("{}: black all over; an environment has light", light.environment);
   return {image.width, image.height, std::move(image.linear), static_cast<float>(light.turn) * degree};
+} catch (const InputError& e) {
+  fail_input("render.light.environment: {}", e.what());
 }
 
 Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {
