@@ -95,7 +95,7 @@ Field<Look> preset() {
   for (const LookPreset& p : look_presets()) names.emplace_back(p.name);
   return Field<Look>{"preset",
                      [names](Reading& in, const YamlNode& n, const std::string& path, Look& out) {
-                       if (const auto name = read_word(in.problems, n, path, names)) out = *look_preset(*name);
+                       if (const auto name = read_word(in.problems, n, path, names)) out = look_preset(*name)->look;
                      },
                      {}}
       .takes(word_info(names))
@@ -278,8 +278,7 @@ void read_looks(Reading& in, const YamlNode& root, model::Scene& scene) {
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);
-    const YamlNode* const own = materials && materials->is_map() ? materials->find(m.name) : nullptr;
-    const YamlNode* const preset = own && own->is_map() ? own->find("preset") : nullptr;
+    const YamlNode* const preset = find_in(find_in(materials, m.name), "preset");
     scene.render.looks[m.name] = default_look(m.type, preset ? preset->text : "", info_of(m).liquid);
   }
   for (const Collider& c : scene.colliders) {

@@ -283,7 +283,7 @@ void check_cuts(Reading& in, const YamlNode* bodies, const model::Scene& scene) 
   for (const Collider& c : scene.colliders)
     if (!c.pin) names.push_back(c.name);
   for (const Entry& body : bodies->entries) {
-    const YamlNode* cut = body.value.is_map() ? body.value.find("cut") : nullptr;
+    const YamlNode* cut = find_in(&body.value, "cut");
     if (!cut || cut->kind != YamlNode::Kind::list) continue;
     for (const YamlNode& n : cut->items)
       if (!n.text.empty() && std::find(names.begin(), names.end(), n.text) == names.end())
