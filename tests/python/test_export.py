@@ -15,16 +15,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 COMMAND = pathlib.Path(os.environ["DREAMPM_COMMAND"])
 FPS = 50
 SCALE = 100  # centimeters
-SCENE = """dreampm: 1
-name: two-things
-space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}
-time: {fps: 50, frames: 3}
-materials:
-  water: {type: newtonian, max_compression: 0.05}
-  jelly: {type: elastic, youngs_modulus: 2e4, poissons_ratio: 0.3}
-bodies:
-  column: {material: water, velocity: [0.5, 0, 0.1], shape: {box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}}}
-  cube: {material: jelly, color: [1, 0.5, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
+SCENE = pathlib.Path(__file__).with_name("two-things.yaml").read_text() + """\
 output: {folder: run, particles: {attributes: [velocity, j, f, color]}}
 render: {size: [64, 36], samples: 4, noise: 0.1}
 """
