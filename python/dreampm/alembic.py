@@ -86,7 +86,7 @@ def _chosen(there: list[int], wanted: str | None, folder: pathlib.Path) -> list[
     numbers = list(range(int(ends[0]), int(ends[-1]) + 1))
     missing = [n for n in numbers if n not in there]
     if missing:
-        raise ValueError(f"{folder}: frame {missing[0]} is not simulated")
+        raise ValueError(f"{folder}: frame {missing[0]} is not simulated; it has {len(there)} frames")
     return numbers
 
 

@@ -121,6 +121,15 @@ TEST_F(RenderVerb, ComparesRunsAndFiles) {
   EXPECT_EQ(type("render --compare changed.png").code, 2);
   EXPECT_THAT(type("render --compare changed.png out/fall").err, HasSubstr("a folder and a file"));
   EXPECT_THAT(type("render --compare none out/fall").err, HasSubstr("none: no such file or folder"));
+  EXPECT_THAT(type("render --compare changed.png changed.png --frame 2 --out no").err,
+              HasSubstr("changed.png is a picture; frames are chosen of two runs"));
+  ExrPicture nan = read_exr(file("render/render_000002.exr"));
+  for (ExrChannel& c : nan.channels)
+    if (c.name == "G") c.values[96 + 3] = std::nanf("");
+  write_exr(folder / "nan.exr", nan);
+  const Typed not_finite = type("render --compare out/fall/render/render_000002.exr nan.exr --out no");
+  EXPECT_EQ(not_finite.code, 2);
+  EXPECT_THAT(not_finite.err, HasSubstr("nan.exr: pixel (3, 1) is not finite"));
   for (const char* drawing : {"--exr", "--samples 4", "--look water", "--crop 0,0,4,4"}) {
     const Typed both = type(std::string("render --compare changed.png changed.png --out no ") + drawing);
     EXPECT_EQ(both.code, 2) << drawing;

@@ -85,7 +85,9 @@ std::vector<Comparison> compare_pictures(const fs::path& a, const fs::path& b, c
     if (!fs::exists(each)) fail_input("{}: no such file or folder; give two runs or two pictures", each.string());
   if (fs::is_directory(a) != fs::is_directory(b))
     fail_input("{} and {} are a folder and a file; give two runs or two pictures", a.string(), b.string());
-  if (!fs::is_directory(a))
+  const bool runs = fs::is_directory(a);
+  if (!runs && (first > 0 || last > 0)) fail_input("{} is a picture; frames are chosen of two runs", a.string());
+  if (!runs)
     return {compare(a, b, fmt::format("{} and {}", a.filename().string(), b.filename().string()),
                     out / fmt::format("compare_{}_{}.png", a.stem().string(), b.stem().string()))};
   const RunFolder left = open_run(a), right = open_run(b);

@@ -83,11 +83,7 @@ Environment read_environment(const model::Light& light) try {
                light.environment, image.width, image.height);
   const auto strength = static_cast<float>(light.strength);
   double sum = 0;
-  for (std::size_t i = 0; i < image.linear.size(); ++i) {
-    Vec3f& c = image.linear[i];
-    if (!is_finite(c))
-      fail_input("{}: pixel ({}, {}) is not finite", light.environment, i % static_cast<std::size_t>(image.width),
-                 i / static_cast<std::size_t>(image.width));
+  for (Vec3f& c : image.linear) {
     c = max(c, Vec3f{}) * strength;  // resampling leaves little negative ones
     sum += static_cast<double>(luminance(c));
   }

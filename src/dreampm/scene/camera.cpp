@@ -18,7 +18,7 @@ Field<Camera> camera_from() {
 
 /// A distance or a point.
 Field<Camera> focus() {
-  const Range range = above_zero("m");
+  const Range range = between(1e-6, 1e9, "m");
   return Field<Camera>{"focus",
                        [range](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
                          out.focus.reset(), out.focus_point.reset();

@@ -36,8 +36,8 @@ const Schema<Sun>& sun_schema() {
 
 const Schema<Light>& light_schema() {
   static const Schema<Light> schema{
-      choice("sky", &Light::sky, {"clear", "studio", "night"})
-          .no_default()
+      written_when<Light>(choice("sky", &Light::sky, {"clear", "studio", "night"}).no_default(),
+                          [](const Light& l) { return !has_environment(l); })
           .says("A clear sky, soft boxes in a gray room, or darkness; absent: that of `stage.place`."),
       environment(),
       number("turn", &Light::turn, between(-360, 360, "degrees"))

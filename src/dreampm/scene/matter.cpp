@@ -146,7 +146,7 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
       shape_field(ShapeUse::body),
       vector("velocity", &Body::velocity, any_number("m/s")).says("At the start."),
       vector("spin", &Body::spin, any_number("rad/s")).says("At the start, about its center."),
-      vector("color", &Body::color, between(0, 1)).says("In sRGB; absent: the look of its material."),
+      color("color", &Body::color).says("In sRGB; absent: the look of its material."),
       nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})
                                   .says("A lattice with random offsets, a plain lattice, or Poisson disks.")})
           .says("How its particles are placed."),

@@ -142,7 +142,7 @@ def test_other_axes_and_some_frames(folder):
                                   rtol=1e-4)
 
 
-@pytest.mark.parametrize("more,why", [(["--frames", "3-9"], "frame 5 is not simulated"),
+@pytest.mark.parametrize("more,why", [(["--frames", "3-9"], "frame 5 is not simulated; it has 4 frames"),
                                       (["--frames", "4-2"], "must be A-B"),
                                       (["--out", "film.usd"], "ends with .abc"),
                                       (["--out", "folder.abc"], "folder.abc: is a folder"),
