@@ -42,6 +42,11 @@ void SceneArguments::add_to(CLI::App& verb) {
       ->allow_extra_args(false);
 }
 
+void SceneArguments::add_model_to(CLI::App& verb) {
+  verb.add_option("--model", mesh,
+                  "a mesh in place of the scene's only one, made smaller where walls ask for it: a file or asset:knot");
+}
+
 scene::ParseResult SceneArguments::parse() const {
   if (!std::filesystem::exists(file)) fail_input("{}: no such scene file", file);
   return scene::parse_scene(file, {.variant = variant, .overrides = overrides, .assets = asset_names()});
@@ -56,6 +61,7 @@ model::Scene SceneArguments::load() const {
     else
       errors += (errors.empty() ? "" : "\n") + p.text();
   if (!errors.empty()) throw InputError(errors);
+  if (!mesh.empty()) replace_model(result.scene, mesh);
   return std::move(result.scene);
 }
 
