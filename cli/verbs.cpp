@@ -109,8 +109,7 @@ bool names_run(const std::vector<std::string>& names, const std::vector<std::str
                       (!std::filesystem::exists(first) && !first.has_extension() && names.size() == 1);
   if (!folder) return false;
   if (names.size() > 1) fail_input("{}: is a folder, of which one is taken; else name files", names[0]);
-  if (!of_files.empty())
-    fail_input("{} is for files; what the run {} looks like is in its scene", of_files[0], names[0]);
+  if (!of_files.empty()) fail_input("{} is for files; the run {} has its own in its scene", of_files[0], names[0]);
   return true;
 }
 
