@@ -42,6 +42,15 @@ TEST(FoamEmission, AtTheMeetingOfWaterAndNotBesideIt) {
   EXPECT_EQ(beside, 0u) << "of " << step.particles.size();
 }
 
+TEST(FoamEmission, EndsThatMeetAreNoWalls) {
+  FoamRules rules = basin_rules({0.8f, 0.4f, 0.2f}, 0.01f, block_volume);
+  EXPECT_GT(emitted(Liquid(block, 0.01f, meeting), 0.04f, 2, rules).counts.beside_walls, 0u) << "along z";
+  rules.room.periodic[2] = true;
+  const FoamCounts counts = emitted(Liquid(block, 0.01f, meeting), 0.04f, 2, rules).counts;
+  EXPECT_GT(counts.born(), 100u);
+  EXPECT_EQ(counts.beside_walls, 0u);
+}
+
 TEST(FoamEmission, TwiceTheFramesGiveAsMuch) {
   const FoamRules rules = basin_rules({0.4f, 0.4f, 0.2f}, 0.01f, block_volume);
   const Liquid liquid(block, 0.01f, meeting);

@@ -82,8 +82,9 @@ bool beside_obstacle(const Vec3f& p, const Between& between) {
 float hit_speed(const Vec3f& p, const Vec3f& before, const Vec3f& now, const Between& between) {
   const FoamRules& rules = between.rules;
   float fastest = 0;
-  if (beside_wall(p, rules, true) || beside_obstacle(p, between))
-    fastest = length(now - before - rules.gravity * between.dt);
+  if (const float stopped = length(now - before - rules.gravity * between.dt);
+      stopped > rules.speed.from && (beside_wall(p, rules, true) || beside_obstacle(p, between)))
+    fastest = stopped;
   for (const Obstacle& o : between.obstacles) {
     if (!(o.dt > 0) || o.distance(p, rules.scale) >= rules.scale) continue;
     const Vec3f way = o.velocity(p) - before;
