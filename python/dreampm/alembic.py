@@ -56,14 +56,21 @@ def export(run: str | os.PathLike, file: str | os.PathLike | None = None, *, up:
         raise ValueError(f"{target}: an Alembic file ends with .abc")
     if target.is_dir():
         raise ValueError(f"{target}: is a folder; name a file")
+    if target.parent.exists() and not target.parent.is_dir():
+        raise ValueError(f"{target}: {target.parent} is no folder")
     options = ["--up", up, "--scale", repr(float(scale)), *(["--what", what] if what else [])]
     beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         with tempfile.TemporaryDirectory(prefix="dreampm-alembic-") as temporary:
             _write(folder, record, numbers, options, up, scale, pathlib.Path(temporary), beside)
         os.replace(beside, target)
+    except OSError as e:
+        if e.filename != str(beside):
+            raise
+        raise OSError(e.errno, e.strerror, str(target)) from e  # the name that was asked for
     finally:
-        beside.unlink(missing_ok=True)
+        if beside.is_file():
+            beside.unlink()
     return target
 
 
@@ -240,6 +247,7 @@ class _Archive:
     def __init__(self, file: pathlib.Path, fps: float, first: int):
         from alembic3d import Abc, AbcCoreAbstract
         file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()  # its error says more than Alembic's
         self.archive = Abc.OArchive(str(file))
         self.time = self.archive.addTimeSampling(AbcCoreAbstract.TimeSampling(1 / fps, first / fps))
         self.things: dict[str, _Thing] = {}

@@ -146,7 +146,8 @@ def test_other_axes_and_some_frames(folder):
                                       (["--frames", "4-2"], "must be A-B"),
                                       (["--out", "film.usd"], "ends with .abc"),
                                       (["--out", "folder.abc"], "folder.abc: is a folder"),
-                                      (["--out", "scene.yaml/film.abc"], "scene.yaml"),
+                                      (["--out", "scene.yaml/film.abc"], "film.abc: scene.yaml is no folder"),
+                                      (["--out", "/proc/film.abc"], "directory: '/proc/film.abc'"),
                                       (["--scale", "0"], "--scale"),
                                       (["--what", "foam"], "the scene has no foam")])
 def test_what_cannot_be_written(folder, more, why):
