@@ -63,6 +63,7 @@ void add_farm(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(app, "farm", "Write a scene as a job for many machines, up to the film",
                             "dreampm farm scenes/dam-break.yaml --to openjd --chunk 10");
   a->scene.add_to(*verb);
+  a->scene.add_model_to(*verb);
   a->farm.add_to(*verb, true);
   verb->add_option("--out", a->out, "the run's folder, and the job's (default: the scene's output.folder)");
   verb->callback([a, &action] { action = [a] { return write_farm(*a); }; });

@@ -18,7 +18,7 @@ constexpr Part parts[] = {
 
 struct MakeArguments {
   SceneArguments scene;
-  std::string model, out, isa = "auto", only, range;
+  std::string out, isa = "auto", only, range;
   int threads = 0;
 };
 
@@ -36,7 +36,6 @@ bool make_asked(const MakeArguments& a, const model::Scene& scene, const MakeOpt
 int make_all(const MakeArguments& a) {
   model::Scene scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
-  if (!a.model.empty()) replace_model(scene, a.model);
   const std::filesystem::path folder = scene.output.folder;
   if (!make_asked(a, scene, {.folder = folder, .threads = a.threads, .isa = a.isa}))
     info("nothing to do: {}{} is up to date", a.range.empty() ? "" : fmt::format("frames {} of ", a.range),
@@ -53,9 +52,7 @@ void add_make(CLI::App& app, Action& action) {
   CLI::App* verb = add_verb(app, "make", "Simulate, mesh, draw and encode a scene; goes on where it stopped",
                             "dreampm make scenes/dragon-splatting.yaml --variant preview");
   a->scene.add_to(*verb);
-  verb->add_option(
-      "--model", a->model,
-      "a mesh in place of the scene's only one, made smaller where walls ask for it: a file or asset:knot");
+  a->scene.add_model_to(*verb);
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
   std::vector<std::string> names;
   for (const Part& part : parts) names.emplace_back(part.name);

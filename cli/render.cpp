@@ -1,5 +1,7 @@
+#include <array>
 #include <charconv>
 #include <map>
+#include <optional>
 
 #include "dreampm/pipeline/compare_pictures.h"
 #include "verbs.h"
@@ -17,22 +19,26 @@ struct RenderArguments {
   std::vector<std::string> of_files, of_runs;  ///< options given that only files, or runs, take
 };
 
-/// "x0,y0,x1,y1"
-PixelBox pixel_box(const std::string& text) {
-  std::vector<int> numbers;
+/// Of "x0,y0,x1,y1"; nothing of other text.
+std::optional<PixelBox> pixel_box(const std::string& text) {
+  std::array<int, 4> n{};
   const char* at = text.data();
   const char* const end = at + text.size();
-  for (bool more = true; more;) {
-    int n = 0;
-    const auto [next, error] = std::from_chars(at, end, n);
-    if (error != std::errc{} || (next != end && *next != ',')) break;
-    numbers.push_back(n);
-    more = next != end;
-    at = more ? next + 1 : end;
+  for (std::size_t i = 0; i < n.size(); ++i) {
+    const auto [next, error] = std::from_chars(at, end, n[i]);
+    const bool last = i + 1 == n.size();
+    if (error != std::errc{} || (last ? next != end : next == end || *next != ',')) return std::nullopt;
+    at = last ? end : next + 1;
   }
-  if (at != end || numbers.size() != 4)
-    fail_input("--crop {}: give x0,y0,x1,y1, pixels from the upper left, as 600,200,1000,480", text);
-  return {numbers[0], numbers[1], numbers[2], numbers[3]};
+  return PixelBox{n[0], n[1], n[2], n[3]};
+}
+
+CLI::Validator box_of_pixels() {
+  const auto check = [](const std::string& text) {
+    if (pixel_box(text)) return std::string();
+    return fmt::format("'{}' is no box; give X0,Y0,X1,Y1, pixels from the upper left, as 600,200,1000,480", text);
+  };
+  return CLI::Validator(check, {});
 }
 
 void print_names(const std::vector<std::filesystem::path>& files) {
@@ -47,7 +53,7 @@ int render_run(const RenderArguments& a, const RenderOptions& options) {
   if (!a.crop.empty() || a.turntable > 0) {
     const RunFolder run = open_run(a.names[0]);
     if (!a.crop.empty())
-      print_names(render_part(run, options, pixel_box(a.crop), out_folder(a, run.folder / "crop")));
+      print_names(render_part(run, options, *pixel_box(a.crop), out_folder(a, run.folder / "crop")));
     else
       print_names(render_turntable(run, a.frame, a.turntable, options.wishes, out_folder(a, run.folder / "turntable")));
     return 0;
@@ -85,7 +91,7 @@ int render_frames(const RenderArguments& a) {
   request.up = ups().at(a.up);
   request.wishes = options.wishes;
   request.out = out_folder(a, request.out);
-  if (!a.crop.empty()) request.crop = pixel_box(a.crop);
+  if (!a.crop.empty()) request.crop = *pixel_box(a.crop);
   print_names(render_files(request));
   return 0;
 }
@@ -126,26 +132,31 @@ void add_render(CLI::App& app, Action& action) {
   auto* some =
       verb->add_option("--frames", a->range, "of a run: only frames A-B, or A:B, both included")->excludes(one);
   PictureWishes& wishes = a->options.wishes;
-  verb->add_option("--scale", wishes.scale, "of the picture's size (files: of 1280 x 720)")->check(number_in(0.01, 4));
-  verb->add_option("--samples", wishes.samples, "at most, a pixel (default: the scene's; files: 32)")
-      ->transform(whole_number(2, 65536));
-  verb->add_flag("--exr", wishes.exr,
-                 "beside each PNG an OpenEXR file: linear light, depth, normals, albedo, motion vectors");
-  verb->add_flag("--denoise", wishes.denoise, "take noise out by Open Image Denoise, which is installed apart");
+  std::vector<CLI::Option*> of_drawing{
+      verb->add_option("--scale", wishes.scale, "of the picture's size (files: of 1280 x 720)")
+          ->check(number_in(0.01, 4)),
+      verb->add_option("--samples", wishes.samples, "at most, a pixel (default: the scene's; files: 32)")
+          ->transform(whole_number(2, 65536)),
+      verb->add_flag("--exr", wishes.exr,
+                     "beside each PNG an OpenEXR file: linear light, depth, normals, albedo, motion vectors"),
+      verb->add_flag("--denoise", wishes.denoise, "take noise out by Open Image Denoise, which is installed apart")};
   auto* crop = verb->add_option("--crop", a->crop,
                                 "draw only the pixels X0,Y0,X1,Y1 from the upper left, X1 and Y1 not included, as the "
-                                "whole picture has them (of a run: to DIR/crop)");
+                                "whole picture has them (of a run: to DIR/crop)")
+                   ->check(box_of_pixels());
   auto* table = verb->add_option("--turntable", a->turntable,
                                  "of a run, with --frame: this many pictures from a circle round it, to DIR/turntable")
                     ->transform(whole_number(1, 100000))
                     ->needs(one)
                     ->excludes(crop);
-  verb->add_flag("--compare", a->compare,
-                 "put pictures of two runs, or two PNG or EXR files, beside each other with their difference, and "
-                 "print how large it is")
-      ->excludes(crop)
-      ->excludes(table);
+  auto* compared =
+      verb->add_flag("--compare", a->compare,
+                     "put pictures of two runs, or two PNG or EXR files, beside each other with their difference, and "
+                     "print how large it is");
   const std::vector<CLI::Option*> of_files = add_of_files(*verb, *a);
+  of_drawing.insert(of_drawing.end(), {crop, table});
+  of_drawing.insert(of_drawing.end(), of_files.begin(), of_files.end());
+  for (CLI::Option* o : of_drawing) compared->excludes(o);
   verb->add_option("--out", a->out, "the folder of pictures (default: render for files, compare for comparisons)");
   add_threads(*verb, a->threads);
   verb->callback([a, of_files, one, some, table, &action] {

@@ -42,6 +42,11 @@ void SceneArguments::add_to(CLI::App& verb) {
       ->allow_extra_args(false);
 }
 
+void SceneArguments::add_model_to(CLI::App& verb) {
+  verb.add_option("--model", mesh,
+                  "a mesh in place of the scene's only one, made smaller where walls ask for it: a file or asset:knot");
+}
+
 scene::ParseResult SceneArguments::parse() const {
   if (!std::filesystem::exists(file)) fail_input("{}: no such scene file", file);
   return scene::parse_scene(file, {.variant = variant, .overrides = overrides, .assets = asset_names()});
@@ -56,6 +61,7 @@ model::Scene SceneArguments::load() const {
     else
       errors += (errors.empty() ? "" : "\n") + p.text();
   if (!errors.empty()) throw InputError(errors);
+  if (!mesh.empty()) replace_model(result.scene, mesh);
   return std::move(result.scene);
 }
 
@@ -103,8 +109,7 @@ bool names_run(const std::vector<std::string>& names, const std::vector<std::str
                       (!std::filesystem::exists(first) && !first.has_extension() && names.size() == 1);
   if (!folder) return false;
   if (names.size() > 1) fail_input("{}: is a folder, of which one is taken; else name files", names[0]);
-  if (!of_files.empty())
-    fail_input("{} is for files; what the run {} looks like is in its scene", of_files[0], names[0]);
+  if (!of_files.empty()) fail_input("{} is for files; the run {} has its own in its scene", of_files[0], names[0]);
   return true;
 }
 

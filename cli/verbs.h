@@ -60,12 +60,15 @@ const CLI::App& find_verb(const CLI::App& app, std::span<const std::string>& wor
 
 /// SCENE, --variant and --set, which several verbs share.
 struct SceneArguments {
-  std::string file, variant;
+  std::string file, variant, mesh;
   std::vector<std::string> overrides;
 
   void add_to(CLI::App& verb);
+  /// --model, for verbs that make a scene.
+  void add_model_to(CLI::App& verb);
   scene::ParseResult parse() const;
-  /// The scene; its warnings are logged. Throws InputError with every error on a line of its own.
+  /// The scene, with the mesh that --model names; its warnings are logged. Throws InputError with
+  /// every error on a line of its own.
   model::Scene load() const;
   SceneSource source() const;
 };

@@ -19,8 +19,8 @@ struct ParticleView {
   std::span<const Vec3f> position;    ///< m
   std::span<const Vec3f> velocity;    ///< m/s, of the last step; at the start as the scene says
   std::span<const float> J;           ///< volume over volume at rest [1]
-  /// Linear red, green, blue, 0 to 1: of its body, else of its material's look; of clear matter
-  /// what 0.1 m lets through.
+  /// Linear red, green, blue, 0 to 1: of its body or emitter, else of its material's look; of clear
+  /// matter what 0.1 m lets through.
   std::span<const Vec3f> color;
   std::shared_ptr<const void> keep;  ///< owns the arrays
 

@@ -273,9 +273,9 @@ class Simulation {
   void save_moment(const std::filesystem::path& file) const;
   /// The same for `finer`, which is this scene at half the spacing: each particle becomes eight, in
   /// the middles of the eighths of the cube that it takes, deformed as it is, at its state, its
-  /// velocity and the velocity's change over the cube. Mass and momentum stay. What would lie
-  /// behind a wall or in a collider is moved out of it. Throws InputError where there is no memory
-  /// for them.
+  /// velocity and the velocity's change over the cube. Mass and momentum stay, as do the emitter
+  /// that it came from and when. What would lie behind a wall or in a collider is moved out of it.
+  /// Throws InputError where there is no memory for them.
   void save_moment(const std::filesystem::path& file, const Scene& finer) const;
 
   // ---- surfaces

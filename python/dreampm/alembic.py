@@ -38,7 +38,7 @@ def export(run: str | os.PathLike, file: str | os.PathLike | None = None, *, up:
     frames: "A-B", else all. what: as `dreampm export --what`. Frame n is at n/fps, so that it is frame n of a program
     that shows fps frames a second. What stands at `file` is replaced once all of it is written. Raises ImportError
     without alembic3d, ValueError for a folder that is no run or lacks the frames, RuntimeError with the command's
-    message where it refuses.
+    message where it refuses, OSError where the file cannot be written.
     """
     try:
         import alembic3d  # noqa: F401
@@ -47,21 +47,30 @@ def export(run: str | os.PathLike, file: str | os.PathLike | None = None, *, up:
     folder = pathlib.Path(run)
     try:
         record = json.loads((folder / "run.json").read_text())
-    except OSError as e:
-        raise ValueError(f"{folder}: is no run: {e}") from e
-    numbers = _chosen([f["frame"] for f in record["frames"]], frames, folder)
+        there = [f["frame"] for f in record["frames"]]
+    except (OSError, ValueError, KeyError, TypeError) as e:
+        raise ValueError(f"{folder}: is no run's folder; dreampm run SCENE makes one: {e}") from e
+    numbers = _chosen(there, frames, folder)
     target = pathlib.Path(file) if file is not None else folder / "export" / f"{_name_of(folder)}.abc"
     if target.suffix != ".abc":
         raise ValueError(f"{target}: an Alembic file ends with .abc")
-    target.parent.mkdir(parents=True, exist_ok=True)
+    if target.is_dir():
+        raise ValueError(f"{target}: is a folder; name a file")
+    if target.parent.exists() and not target.parent.is_dir():
+        raise ValueError(f"{target}: {target.parent} is no folder")
     options = ["--up", up, "--scale", repr(float(scale)), *(["--what", what] if what else [])]
     beside = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
         with tempfile.TemporaryDirectory(prefix="dreampm-alembic-") as temporary:
             _write(folder, record, numbers, options, up, scale, pathlib.Path(temporary), beside)
         os.replace(beside, target)
+    except OSError as e:
+        if e.filename != str(beside):
+            raise
+        raise OSError(e.errno, e.strerror, str(target)) from e  # the name that was asked for
     finally:
-        beside.unlink(missing_ok=True)
+        if beside.is_file():
+            beside.unlink()
     return target
 
 
@@ -84,7 +93,7 @@ def _chosen(there: list[int], wanted: str | None, folder: pathlib.Path) -> list[
     numbers = list(range(int(ends[0]), int(ends[-1]) + 1))
     missing = [n for n in numbers if n not in there]
     if missing:
-        raise ValueError(f"{folder}: frame {missing[0]} is not simulated")
+        raise ValueError(f"{folder}: frame {missing[0]} is not simulated; it has {len(there)} frames")
     return numbers
 
 
@@ -237,6 +246,8 @@ class _Archive:
 
     def __init__(self, file: pathlib.Path, fps: float, first: int):
         from alembic3d import Abc, AbcCoreAbstract
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.touch()  # its error says more than Alembic's
         self.archive = Abc.OArchive(str(file))
         self.time = self.archive.addTimeSampling(AbcCoreAbstract.TimeSampling(1 / fps, first / fps))
         self.things: dict[str, _Thing] = {}
@@ -308,7 +319,7 @@ def main() -> int:
     a = parser.parse_args()
     try:
         print(export(a.run, a.out, up=a.up, scale=a.scale, frames=a.frames, what=a.what))
-    except (ImportError, ValueError, RuntimeError) as e:
+    except (ImportError, OSError, ValueError, RuntimeError) as e:
         print(f"dreampm.alembic: {e}", file=sys.stderr)
         return 2
     return 0

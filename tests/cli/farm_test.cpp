@@ -69,6 +69,23 @@ TEST_F(Farm, AMakefileGivesTheFilmOfMakeAfterTheFolderMoved) {
   EXPECT_THAT(t.err, Not(HasSubstr("render: frame")));
 }
 
+TEST_F(Farm, AModelReplacesTheOnlyMeshAndTravelsAlong) {
+  std::string wedge = cube;  // one corner is cut off to the middle of an edge
+  wedge.replace(wedge.find("1 1 1"), 5, "1 .5 1");
+  write("mine/wedge.off", wedge);
+  const std::string model = "--model mine/wedge.off ";
+  ASSERT_EQ(type("farm cube.yaml " + model + "--to make --chunk 2 --out job").code, 0);
+  ASSERT_EQ(type("make cube.yaml " + model + "--out whole").code, 0);
+  std::vector<std::string> models;
+  for (const auto& f : fs::recursive_directory_iterator(folder / "job/farm/models"))
+    if (f.is_regular_file()) models.push_back(f.path().filename().string());
+  EXPECT_EQ(models, std::vector<std::string>{"wedge.off"});
+  fs::remove_all(folder / "mine");
+  const Typed t = make_job("job");
+  ASSERT_EQ(t.code, 0) << t.out << t.err;
+  EXPECT_TRUE(film("job") == film("whole")) << "the films differ";
+}
+
 TEST_F(Farm, FoamIsMadeByTheTaskThatSimulates) {
   write("cube.yaml", std::string(cube_scene) + "foam: {amount: 100, scale: 0.05}\n");
   ASSERT_EQ(type("farm cube.yaml --to make --chunk 2 --out job").code, 0);
@@ -210,6 +227,11 @@ TEST_F(Farm, BadInputIsRefusedAndWritesNothing) {
   expect_refused("farm cube.yaml --to make --set space.spcing=1", "did you mean 'spacing'?");
   write("bad.yaml", cube_scene + "materals: {}\n");
   expect_refused("farm bad.yaml --to make", "bad.yaml:9:1: error: unknown key 'materals'; did you mean 'materials'?");
+  expect_refused("farm cube.yaml --to make --model none.off", "none.off");
+  write("box.yaml", cube_scene.substr(0, cube_scene.find("mesh:")) + "box: {size: [0.1, 0.1, 0.1]}, " +
+                        cube_scene.substr(cube_scene.find("center:")));
+  expect_refused("farm box.yaml --to make --model mine/cube.off",
+                 "--model: the scene has 0 bodies with a mesh; it replaces the mesh of exactly one");
   fs::remove(folder / "mine/cube.off");
   EXPECT_EQ(type("farm cube.yaml --to make").code, 2);
   EXPECT_FALSE(fs::exists(folder / "out"));

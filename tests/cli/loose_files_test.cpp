@@ -246,7 +246,7 @@ TEST_F(LooseFiles, RefuseWhatCannotBe) {
       {"surface fluid_0.ply fluid_0.ply.GZ --spacing 0.1", "both would become fluid_0.ply"},
       {"surface other fluid_0.ply --spacing 0.1", "other: is a folder, of which one is taken"},
       {"surface fluid_0.ply other --spacing 0.1", "other: is a folder among files"},
-      {"surface other --spacing 0.1", "--spacing is for files; what the run other looks like is in its scene"},
+      {"surface other --spacing 0.1", "--spacing is for files; the run other has its own in its scene"},
       {"surface other", "other: has no scene.yaml: not a run's folder"},
       {"surface none", "none: no such folder"},
       {"render fluid_0.ply --frame 2", "--frame is for a run's folder; of files name those that are to be drawn"},

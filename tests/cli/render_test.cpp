@@ -10,6 +10,7 @@
 namespace dreampm::test {
 namespace {
 using nlohmann::json;
+using testing::AllOf;
 using testing::ContainsRegex;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
@@ -78,10 +79,10 @@ TEST_F(RenderVerb, APartHasThePixelsOfTheWhole) {
   for (int y = 0; y < 30; ++y)
     for (int x = 0; x < 96; ++x) ASSERT_EQ(cut.at(0, y)[x], whole.at(20, 10 + y)[x]);
   EXPECT_EQ(read_exr(file("crop/crop_000002.exr")).x, 20);
-  for (const char* wrong : {"1,2,3", "a,b,c,d", "20,10,20,40", "0,0,97,64", "1,2,3,4,5", "-1,0,4,4"}) {
+  for (const char* wrong : {"1,2,3", "a,b,c,d", "20,10,20,40", "0,0,97,64", "1,2,3,4,5", "-1,0,4,4", "0,0,9,9,"}) {
     const Typed refused = render(std::string("--frame 2 --crop=") + wrong);
     EXPECT_EQ(refused.code, 2) << wrong;
-    EXPECT_THAT(refused.err, HasSubstr(wrong));
+    EXPECT_THAT(refused.err, AllOf(HasSubstr("crop"), HasSubstr(wrong)));
   }
 }
 
@@ -119,6 +120,22 @@ TEST_F(RenderVerb, ComparesRunsAndFiles) {
   EXPECT_THAT(kinds.err, HasSubstr("of two kinds"));
   EXPECT_EQ(type("render --compare changed.png").code, 2);
   EXPECT_THAT(type("render --compare changed.png out/fall").err, HasSubstr("a folder and a file"));
+  EXPECT_THAT(type("render --compare none out/fall").err, HasSubstr("none: no such file or folder"));
+  EXPECT_THAT(type("render --compare changed.png changed.png --frame 2 --out no").err,
+              HasSubstr("changed.png is a picture; frames are chosen of two runs"));
+  ExrPicture nan = read_exr(file("render/render_000002.exr"));
+  for (ExrChannel& c : nan.channels)
+    if (c.name == "G") c.values[96 + 3] = std::nanf("");
+  write_exr(folder / "nan.exr", nan);
+  const Typed not_finite = type("render --compare out/fall/render/render_000002.exr nan.exr --out no");
+  EXPECT_EQ(not_finite.code, 2);
+  EXPECT_THAT(not_finite.err, HasSubstr("nan.exr: pixel (3, 1) is not finite"));
+  for (const char* drawing : {"--exr", "--samples 4", "--look water", "--crop 0,0,4,4"}) {
+    const Typed both = type(std::string("render --compare changed.png changed.png --out no ") + drawing);
+    EXPECT_EQ(both.code, 2) << drawing;
+    EXPECT_THAT(both.err, HasSubstr("excludes")) << drawing;
+    EXPECT_FALSE(fs::exists(folder / "no")) << drawing;
+  }
 }
 
 TEST_F(RenderVerb, TheDenoiserIsThereOrRefused) {
@@ -132,7 +149,7 @@ TEST_F(RenderVerb, TheDenoiserIsThereOrRefused) {
     return;
   }
   EXPECT_EQ(drawn.code, 2);
-  EXPECT_THAT(drawn.err, HasSubstr("pip install pyoidn"));
+  EXPECT_THAT(drawn.err, AllOf(HasSubstr("pip install pyoidn"), HasSubstr("--denoise")));
   EXPECT_FALSE(fs::exists(file("render/render_000001.png")));
 }
 

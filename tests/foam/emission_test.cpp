@@ -42,6 +42,15 @@ TEST(FoamEmission, AtTheMeetingOfWaterAndNotBesideIt) {
   EXPECT_EQ(beside, 0u) << "of " << step.particles.size();
 }
 
+TEST(FoamEmission, EndsThatMeetAreNoWalls) {
+  FoamRules rules = basin_rules({0.8f, 0.4f, 0.2f}, 0.01f, block_volume);
+  EXPECT_GT(emitted(Liquid(block, 0.01f, meeting), 0.04f, 2, rules).counts.beside_walls, 0u) << "along z";
+  rules.room.periodic[2] = true;
+  const FoamCounts counts = emitted(Liquid(block, 0.01f, meeting), 0.04f, 2, rules).counts;
+  EXPECT_GT(counts.born(), 100u);
+  EXPECT_EQ(counts.beside_walls, 0u);
+}
+
 TEST(FoamEmission, TwiceTheFramesGiveAsMuch) {
   const FoamRules rules = basin_rules({0.4f, 0.4f, 0.2f}, 0.01f, block_volume);
   const Liquid liquid(block, 0.01f, meeting);
@@ -113,6 +122,38 @@ TEST(FoamLimits, AreMeansOfTheFramesInWhichSomethingMoves) {
   // Never below what surface tension holds together.
   EXPECT_GE(found_limits(one, rules).speed.from, 2 * slowest_wave(9.81f));
   EXPECT_NEAR(slowest_wave(9.81f), 0.231f, 1e-3f);  // Lamb, 266: 23 cm/s
+}
+
+TEST(FoamLimits, OfGrainsBeginWhereTheySplash) {
+  FoamRules rules = basin_rules({0.4f, 0.4f, 0.2f}, 0.01f, block_volume);
+  rules.dust = true;
+  const std::vector<FoamMaxima> slow{{10, 0.7f, 0.5f, 100, 0.4f}};
+  EXPECT_NEAR(slowest_splash(9.81f), 1.98f, 5e-3f);  // 40 sqrt(g 0.25 mm)
+  const FoamFound found = found_limits(slow, rules);
+  EXPECT_EQ(found.speed.from, slowest_splash(9.81f));
+  EXPECT_EQ(found.trapped_air.from, 2 * slowest_splash(9.81f)) << "an image comes as fast from the other side";
+}
+
+// A ball comes down on grains at rest, which have stopped it when the frame is over.
+TEST(FoamEmission, GrainsAtRestSplashWhereSomethingFastComesAtThem) {
+  FoamRules rules = basin_rules({0.4f, 0.4f, 0.2f}, 0.01f, block_volume);
+  rules.dust = true;
+  set_limits(rules, {}, found_limits({}, rules));
+  const Liquid sand(block, 0.01f, at_rest);
+  const auto struck = [&](double speed, double dt) {
+    Shape shape;
+    shape.form = SphereShape{0.08};
+    shape.center = Vec3d{0, 0, 0};
+    foam::Obstacle ball;
+    ball.shape = make_region(shape, 0.01, {});
+    ball.bounds = ball.shape->bounds();
+    ball.pose.position = {0.2, 0.26, 0.1}, ball.before.position = {0.2, 0.26 + speed * dt, 0.1}, ball.dt = dt;
+    return advance_foam({}, sand.matter(), sand.matter(), {&ball, 1}, static_cast<float>(dt), 2, rules);
+  };
+  EXPECT_EQ(struck(1.5, 0.02).counts.born(), 0u) << "it presses";
+  const FoamStep hit = struck(4, 0.02);
+  ASSERT_GT(hit.counts.born(), 20u);
+  for (const Vec3f& p : hit.particles.position) EXPECT_LT(std::fabs(p.x - 0.2f), 0.1f);
 }
 
 TEST(FoamLimits, GivenOnesGoBeforeFoundOnes) {

@@ -47,6 +47,40 @@ class FileSizeLimit {
   void (*handler_)(int);
 };
 
+/// The message of `read` for a file NAME of each of the bytes.
+template <class Read>
+auto refusal_of(const std::filesystem::path& folder, const std::string& name, const Read& read) {
+  return [=](const std::string& bytes) {
+    replace_file_text(folder / name, bytes);
+    return message_of<InputError>([&] { read(folder / name); });
+  };
+}
+
+/// What every format of pictures does with no file, a folder and an empty file.
+template <class Read>
+void expect_no_picture(const std::filesystem::path& folder, const std::string& ending, const Read& read) {
+  const std::string none = "none." + ending;
+  EXPECT_THAT(message_of<InputError>([&] { read(folder / none); }), testing::HasSubstr(none + ": cannot be read"));
+  EXPECT_THAT(message_of<InputError>([&] { read(folder); }), testing::HasSubstr("is a folder"));
+  EXPECT_THAT(refusal_of(folder, "bad." + ending, read)(""),
+              testing::HasSubstr("bad." + ending + ": the file is empty"));
+}
+
+/// What every format of pictures does with a file that ends at one of `sizes`, or has a bit wrong
+/// at `flip`.
+template <class Read>
+void expect_damage_is_named(const std::filesystem::path& folder, const std::string& ending, const Read& read,
+                            const std::string& whole, std::initializer_list<std::size_t> sizes, std::size_t flip) {
+  const auto error = refusal_of(folder, "bad." + ending, read);
+  for (const std::size_t size : sizes)
+    EXPECT_THAT(error(whole.substr(0, size)),
+                testing::AllOf(testing::HasSubstr("bad." + ending), testing::HasSubstr("damaged")))
+        << size;
+  std::string flipped = whole;
+  flipped[flip] = static_cast<char>(flipped[flip] ^ 16);
+  EXPECT_THAT(error(flipped), testing::HasSubstr("damaged"));
+}
+
 /// How many files lie in a folder.
 inline std::size_t files_in(const std::filesystem::path& folder) {
   std::size_t n = 0;

@@ -50,21 +50,13 @@ TEST(Png, OtherKindsBecomeRgb) {
 
 TEST(Png, DamagedFilesAreNamed) {
   const fs::path folder = test::fresh_folder();
-  const auto error = [&](const std::string& bytes) {
-    replace_file_text(folder / "bad.png", bytes);
-    return message_of<InputError>([&] { read_png(folder / "bad.png"); });
-  };
+  const auto read = [](const fs::path& file) { read_png(file); };
+  const auto error = test::refusal_of(folder, "bad.png", read);
   write_png(folder / "a.png", noise(40, 30));
   const std::string whole = read_file(folder / "a.png");
-  EXPECT_THAT(message_of<InputError>([&] { read_png(folder / "none.png"); }), HasSubstr("none.png: cannot be read"));
-  EXPECT_THAT(message_of<InputError>([&] { read_png(folder); }), HasSubstr("is a folder"));
-  EXPECT_THAT(error(""), HasSubstr("bad.png: the file is empty"));
+  test::expect_no_picture(folder, "png", read);
   EXPECT_THAT(error("not a picture at all"), HasSubstr("not a PNG picture"));
-  for (const std::size_t size : {9u, 20u, 40u, 200u, 1000u, unsigned(whole.size()) - 30})
-    EXPECT_THAT(error(whole.substr(0, size)), AllOf(HasSubstr("bad.png"), HasSubstr("damaged"))) << size;
-  std::string flipped = whole;
-  flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 16);
-  EXPECT_THAT(error(flipped), HasSubstr("damaged"));
+  test::expect_damage_is_named(folder, "png", read, whole, {9, 20, 40, 200, 1000, whole.size() - 30}, whole.size() / 2);
   // Width and height of two thousand million, with the checksum of that header.
   std::string huge = whole;
   huge.replace(16, 8, "\x00\x0f\x42\x40\x00\x0f\x42\x40", 8);

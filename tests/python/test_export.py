@@ -15,16 +15,7 @@ from vtkmodules.vtkIOHDF import vtkHDFReader
 COMMAND = pathlib.Path(os.environ["DREAMPM_COMMAND"])
 FPS = 50
 SCALE = 100  # centimeters
-SCENE = """dreampm: 1
-name: two-things
-space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}
-time: {fps: 50, frames: 3}
-materials:
-  water: {type: newtonian, max_compression: 0.05}
-  jelly: {type: elastic, youngs_modulus: 2e4, poissons_ratio: 0.3}
-bodies:
-  column: {material: water, velocity: [0.5, 0, 0.1], shape: {box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}}}
-  cube: {material: jelly, color: [1, 0.5, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
+SCENE = pathlib.Path(__file__).with_name("two-things.yaml").read_text() + """\
 output: {folder: run, particles: {attributes: [velocity, j, f, color]}}
 render: {size: [64, 36], samples: 4, noise: 0.1}
 """
@@ -303,6 +294,63 @@ def test_crates_stand_in_usd_and_vtkhdf_where_the_run_has_them(tmp_path):
     post = UsdGeom.Mesh(stage.GetPrimAtPath("/zoo/post"))
     assert not UsdGeom.Xformable(post).GetOrderedXformOps()
     assert UsdShade.MaterialBindingAPI(post).GetDirectBindingRel().GetTargets()
+
+
+@pytest.fixture(scope="module")
+def foaming(tmp_path_factory):
+    """A run of twelve frames with foam, and its own foam files. Nothing is emitted in the first frame."""
+    folder = tmp_path_factory.mktemp("foaming")
+    scene = pathlib.Path(__file__).with_name("two-things.yaml").read_text() + "foam: {amount: 0.1, radius: 0.02}\n"  # wider than a spacing
+    (folder / "scene.yaml").write_text(scene.replace("frames: 3", "frames: 12"))
+    dreampm(folder, "run", "scene.yaml", "--out", "run")
+    dreampm(folder, "foam", "run")
+    own = [read_ply(folder / f"run/foam/foam_{n:06}.ply")[1] for n in range(1, 13)]
+    assert len(own[0]) == 0 and len(own[11]) > 1000
+    assert set(own[11]["type"]) == {0, 1, 2}, "spray, foam and bubbles"
+    return folder, own
+
+
+def test_usd_foam(foaming):
+    folder, foam = foaming
+    dreampm(folder, "export", "run", "--to", "usd", "--what", "foam", "--up", "z", "--scale", SCALE)
+    stage = Usd.Stage.Open(str(folder / "run/export/two-things.usda"))
+    [points] = [UsdGeom.Points(p) for p in stage.Traverse() if p.IsA(UsdGeom.Points)]
+    assert points.GetPath() == "/two_things/foam"
+    assert points.GetPointsAttr().GetTimeSamples() == list(range(1, 13))
+    assert points.GetWidthsInterpolation() == "vertex"
+    for n, own in enumerate(foam, 1):
+        where, widths = z_up(columns(own, "x y z")) * SCALE, 2 * own["radius"] * SCALE
+        count = len(own)
+        assert len(points.GetPointsAttr().Get(n)) == points.GetPointCount(n) == count
+        read = lambda values, width=1: np.array(values).reshape(-1, width) if width > 1 else np.array(values)
+        np.testing.assert_allclose(read(points.GetPointsAttr().Get(n), 3), where, rtol=1e-6, atol=1e-4)
+        np.testing.assert_allclose(read(points.GetWidthsAttr().Get(n)), widths, rtol=1e-6)
+        np.testing.assert_allclose(read(points.GetVelocitiesAttr().Get(n), 3), z_up(columns(own, "vx vy vz")) * SCALE,
+                                   rtol=1e-6, atol=1e-4)
+        np.testing.assert_array_equal(read(points.GetIdsAttr().Get(n)), own["id"])
+        for name in ("type", "age"):
+            primvar = UsdGeom.PrimvarsAPI(points).GetPrimvar(name)
+            assert primvar.GetInterpolation() == "vertex"
+            np.testing.assert_allclose(read(primvar.Get(n)), own[name], rtol=1e-6)
+        if count:
+            low, high = map(np.array, points.GetExtentAttr().Get(n))
+            assert np.all(low <= (where - widths[:, None] / 2).min(axis=0) + 1e-4)
+            assert np.all(high >= (where + widths[:, None] / 2).max(axis=0) - 1e-4)
+
+
+def test_vtkhdf_foam(foaming):
+    folder, foam = foaming
+    [file] = dreampm(folder, "export", "run", "--to", "vtkhdf", "--what", "foam")
+    for n, own in enumerate(foam):
+        times, data = step(folder / file, n)
+        assert times == pytest.approx([i / FPS for i in range(12)])
+        assert data.GetNumberOfPoints() == data.GetNumberOfVerts() == len(own)
+        if not len(own):
+            continue
+        np.testing.assert_array_equal(vtk_to_numpy(data.GetPoints().GetData()), columns(own, "x y z"))
+        np.testing.assert_array_equal(array(data, "velocity"), columns(own, "vx vy vz"))
+        for name in ("id", "type", "age", "radius"):
+            np.testing.assert_array_equal(array(data, name), own[name])
 
 
 PAINTS = """dreampm: 1

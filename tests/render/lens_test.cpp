@@ -55,7 +55,9 @@ TEST(Lens, TheFocusIsADistanceOrAPointOrTheMiddle) {
   wish.focus.reset(), wish.focus_point = {1, 1, 1};
   EXPECT_FLOAT_EQ(trace::Camera(wish, {}, 400, 300).focus(), 3) << "along the line of sight";
   wish.focus_point = {0, 0, 5};
-  EXPECT_NE(test::refusal([&] { trace::Camera(wish, {}, 400, 300); }).find("-1 m before the eye"), std::string::npos);
+  EXPECT_NE(
+      test::refusal([&] { trace::Camera(wish, {}, 400, 300); }).find("render.camera.focus lies 1 m behind the eye"),
+      std::string::npos);
   model::Camera fitted;
   fitted.aperture = 0.1;
   const Box3f box{{0, 0, 0}, {2, 1, 1}};

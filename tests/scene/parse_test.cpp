@@ -268,6 +268,21 @@ TEST(Parse, HoneyAndSnowLookLikeThemselvesAndPresetsOfLooksGiveWayToKeys) {
               HasSubstr("scattering is only for type dielectric"));
 }
 
+TEST(Parse, APresetOrATypeOfAVariantReplacesWhatItIsLaidOver) {
+  const auto look = [](const char* base, const char* over) {
+    const std::string text =
+        fmt::format("{}render: {{looks: {{water: {}}}}}\nvariants: {{v: {{render: {{looks: {{water: {}}}}}}}}}\n",
+                    start, base, over);
+    return good(text, {.variant = "v", .overrides = {}}).render.looks.at("water");
+  };
+  const model::Look paint = look("{preset: milk, anisotropy: 0.5}", "{type: opaque, color: [1, 0, 0]}");
+  EXPECT_EQ(paint.type, model::LookType::opaque);
+  EXPECT_EQ(paint.scattering, Vec3d{});
+  EXPECT_EQ(paint.color, (Vec3d{1, 0, 0}));
+  EXPECT_EQ(look("{type: opaque, color: [1, 0, 0]}", "{preset: milk}").scattering.x, 2550);
+  EXPECT_EQ(look("{preset: milk}", "{anisotropy: 0.5}").scattering.x, 2550) << "keys beside a preset change it";
+}
+
 TEST(Parse, APlaceBringsItsSkyAndAnEnvironmentNoSun) {
   const auto light = [](const std::string& render) { return good(start + "render: " + render + "\n").render.light; };
   EXPECT_EQ(light("{}").sky, SkyKind::clear);
@@ -282,6 +297,11 @@ TEST(Parse, APlaceBringsItsSkyAndAnEnvironmentNoSun) {
   EXPECT_EQ(around.environment, file);
   EXPECT_EQ(around.turn, 30);
   EXPECT_EQ(around.sun.strength, 0);
+  const model::Scene night =
+      good(start + "render: {light: {sky: night}}\nvariants: {v: {render: {light: {environment: " + file + "}}}}\n",
+           {.variant = "v", .overrides = {}});
+  EXPECT_EQ(night.render.light.environment, file) << "in place of the sky";
+  EXPECT_EQ(good(write_scene(night)).render.light, night.render.light);
   EXPECT_THAT(bad(start + "render: {light: {environment: nowhere.exr}}\n"),
               HasSubstr("render.light.environment is 'nowhere.exr': no such file"));
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "dreampm/base/error.h"
@@ -110,6 +111,49 @@ TEST_F(Save, AMomentForAFinerScene) {
   EXPECT_THAT([&] { s.save_moment(folder / "no.h5", s.scene()); },
               ThrowsMessage<InputError>(HasSubstr("with space.spacing 0.01 m, half of what it is")));
   finer.step();
+}
+
+// Sinks take some of what two taps gave in turn.
+TEST_F(Save, AMomentForAFinerSceneKeepsWhatEmittersGave) {
+  const auto tap = [](const char* name, double x, const char* color) {
+    return fmt::format(
+        "  {}: {{material: water, color: {}, shape: {{box: {{min: [{}, 0.2, 0.06], max: [{}, 0.26, 0.14]}}}}, "
+        "velocity: [0, -1, 0], pool: 9000}}\n",
+        name, color, x, x + 0.06);
+  };
+  const Scene scene = parse_scene(
+      "dreampm: 1\nname: taps\nspace: {max: [0.4, 0.3, 0.2], spacing: 0.02}\ntime: {fps: 50, frames: 9}\n"
+      "materials: {water: {type: newtonian}}\n"
+      "bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.4, 0.06, 0.2]}}}}\nemitters:\n" +
+          tap("red", 0.08, "[1, 0, 0]") + tap("blue", 0.24, "[0, 0, 1]") +
+          "sinks: {drain: {shape: {box: {min: [0.2, 0, 0], max: [0.4, 0.08, 0.2]}}}}\n",
+      "taps.yaml");
+  Simulation s(scene, quiet());
+  s.advance_frames(8);
+  std::filesystem::create_directories(folder);
+  model::Scene denser = s.scene().model();
+  denser.space.max = denser.space.end(), denser.space.spacing /= 2;
+  denser.bodies.clear(), denser.sinks.clear();  // it would take some parts of what is at its edge
+  denser.start = (folder / "finer.h5").string();
+  s.save_moment(folder / "finer.h5", Scene(denser, "finer"));
+  Simulation finer(Scene(denser, "finer"), quiet());
+  const ParticleView coarse = s.particles("water"), fine = finer.particles("water");
+  for (const Vec3f& color : {Vec3f{1, 0, 0}, Vec3f{0, 0, 1}}) {
+    const auto counted = [&](const ParticleView& view) { return std::ranges::count(view.color, color); };
+    EXPECT_GT(counted(coarse), 50);
+    EXPECT_EQ(counted(fine), 8 * counted(coarse));
+    const auto middle = [&](const ParticleView& view) {
+      Vec3f sum{};
+      for (std::size_t p = 0; p < view.size(); ++p)
+        if (view.color[p] == color) sum += view.position[p];
+      return sum / static_cast<float>(counted(view));
+    };
+    EXPECT_LT(length(middle(fine) - middle(coarse)), 0.001f);
+  }
+  finer.advance_frames(1);  // no id comes twice, and taps go on in their colors
+  const ParticleView later = finer.particles("water");
+  EXPECT_EQ(std::ranges::adjacent_find(later.id), later.id.end());
+  EXPECT_GT(std::ranges::count(later.color, Vec3f{1, 0, 0}), std::ranges::count(fine.color, Vec3f{1, 0, 0}));
 }
 
 TEST_F(Save, RefusesNamesThatNoSceneHas) {

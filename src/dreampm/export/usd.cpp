@@ -86,7 +86,7 @@ class PointsPrim {
       return out;
     };
     const std::vector<Vec3f> points = chosen(frame.position);
-    extent_.add(number, extent(points, width_ / 2));
+    float widest = own_widths_ ? 0 : width_;
     points_.add(number, points);
     velocities_.add(number, chosen(frame.velocity));
     ids_.add<std::int32_t>(number, chosen(frame.id));
@@ -94,9 +94,11 @@ class PointsPrim {
       if (name == "radius" && own_widths_) {
         std::vector<float> widths = chosen(values);
         for (float& w : widths) w *= 2;
+        for (const float w : widths) widest = std::max(widest, w);
         widths_.add<float>(number, widths);
       } else if (values.size() == frame.size())
         column(name).add<float>(number, chosen(values));
+    extent_.add(number, extent(points, widest / 2));
     if (colors.empty()) return;
     if (!colors_) colors_ = numbers_.more("color3f[] primvars:displayColor", per_point);
     colors_->add(number, chosen(colors));

@@ -2,8 +2,6 @@
 // File Format", version 2.0 (https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html).
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <numeric>
 
 #include "dreampm/base/error.h"
@@ -215,8 +213,7 @@ void add_particles(VtkHdfFile& out, double time, const ClipInfo& clip, const Par
 std::vector<std::uint8_t> bytes_of(const std::vector<float>& linear) {
   std::vector<std::uint8_t> out;
   out.reserve(linear.size());
-  for (const float v : linear)
-    out.push_back(static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(v, 0.0f, 1.0f)))));
+  for (const float v : linear) out.push_back(srgb_byte(v));
   return out;
 }
 

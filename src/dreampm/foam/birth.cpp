@@ -60,15 +60,37 @@ One child(const Piece& piece, Cause cause, Lot lot, std::int32_t id, const Betwe
   return one;
 }
 
-bool beside_wall(const Vec3f& p, const Between& between) {
-  const Room& room = between.rules.room;
-  const float near = between.rules.scale;
+/// True if a wall of the room is nearer than the scale; `floor`: the floor counts.
+bool beside_wall(const Vec3f& p, const FoamRules& rules, bool floor) {
+  const Room& room = rules.room;
   for (int a = 0; a < 3; ++a) {
-    if (room.wall(a, false) && p[a] - room.box.min[a] < near && a != 1) return true;
-    if (room.wall(a, true) && room.box.max[a] - p[a] < near) return true;
+    if (room.wall(a, false) && p[a] - room.box.min[a] < rules.scale && (floor || a != 1)) return true;
+    if (room.wall(a, true) && room.box.max[a] - p[a] < rules.scale) return true;
   }
+  return false;
+}
+
+bool beside_obstacle(const Vec3f& p, const Between& between) {
+  const float near = between.rules.scale;
   return std::any_of(between.obstacles.begin(), between.obstacles.end(),
                      [&](const Obstacle& o) { return o.distance(p, near) < near; });
+}
+
+/// How fast grains and what is within the scale hit each other since the frame before, at whatever
+/// angle [m/s]: what was stopped at a wall or an obstacle, and what an obstacle came at. `before`
+/// and `now`: the grains' velocities.
+float hit_speed(const Vec3f& p, const Vec3f& before, const Vec3f& now, const Between& between) {
+  const FoamRules& rules = between.rules;
+  float fastest = 0;
+  if (const float stopped = length(now - before - rules.gravity * between.dt);
+      stopped > rules.speed.from && (beside_wall(p, rules, true) || beside_obstacle(p, between)))
+    fastest = stopped;
+  for (const Obstacle& o : between.obstacles) {
+    if (!(o.dt > 0) || o.distance(p, rules.scale) >= rules.scale) continue;
+    const Vec3f way = o.velocity(p) - before;
+    if (dot(way, o.normal(p)) > 0) fastest = std::max(fastest, length(way));
+  }
+  return fastest;
 }
 
 }  // namespace
@@ -83,8 +105,11 @@ Born births(const FoamMatter& from, const FoamMatter& to, std::span<const std::i
   std::vector<Rates> rates(n);
   std::vector<std::uint32_t> first(n + 1, 0);
   parallel_for(n, 1024, [&](std::size_t i) {
-    if (!(length(to.velocity[i]) > rules.speed.from)) return;
-    rates[i] = rates_of(causes_of(measures.at(to.position[i]), to.velocity[i]), rules);
+    float hit = 0;
+    if (rules.dust && earlier[i] >= 0)
+      hit = hit_speed(to.position[i], from.velocity[static_cast<std::size_t>(earlier[i])], to.velocity[i], between);
+    if (!(std::max(length(to.velocity[i]), hit) > rules.speed.from)) return;
+    rates[i] = rates_of(causes_of(measures.at(to.position[i]), to.velocity[i], hit), rules);
     const double mean =
         static_cast<double>(rates[i].sum() * volume_of(to, i, rules.spacing)) * static_cast<double>(between.dt);
     first[i + 1] = static_cast<std::uint32_t>(std::min(1e6, mean + uniform(lot_of(i), 0)));
@@ -128,7 +153,8 @@ Born births(const FoamMatter& from, const FoamMatter& to, std::span<const std::i
      : causes[c] == Cause::trapped_air ? out.counts.trapped_air
                                        : out.counts.vorticity)++;
     out.counts.place += static_cast<Vec3d>(out.all[c].position);
-    out.counts.beside_walls += beside_wall(out.all[c].position, between);
+    out.counts.beside_walls +=
+        beside_wall(out.all[c].position, rules, false) || beside_obstacle(out.all[c].position, between);
   }
   return out;
 }

@@ -148,7 +148,7 @@ void Measures::meet(std::span<const Obstacle> obstacles) {
         if (d > scale_ || c[fill][n] < 0.05f) continue;
         const Vec3f v{c[vx][n], c[vy][n], c[vz][n]};
         const float towards = std::max(0.0f, -dot(v - o.velocity(p), o.normal(p)));
-        c[meeting][n] = std::max(c[meeting][n], 2 * towards * std::clamp(1 - d / scale_, 0.0f, 1.0f));
+        c[meeting][n] = std::max(c[meeting][n], image_factor * towards * std::clamp(1 - d / scale_, 0.0f, 1.0f));
       }
     }
   });

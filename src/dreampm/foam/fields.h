@@ -39,6 +39,9 @@ class WayField {
   LatticeField<4> field_;
 };
 
+/// What comes at an obstacle meets its image, at this times its own speed.
+inline constexpr float image_factor = 2;
+
 /// Measures of motion over the scale, at nodes.
 class Measures {
  public:

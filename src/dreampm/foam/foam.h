@@ -74,11 +74,16 @@ struct FoamRules {
 /// The slowest wave on water [m/s], with gravity and surface tension: (4 g sigma/rho)^(1/4) (Lamb,
 /// Hydrodynamics, 266). Slower motion leaves a surface whole. `gravity` in m/s^2.
 float slowest_wave(float gravity);
+/// The slowest grain that splashes others out of a bed where it lands [m/s]: 40 sqrt(g d), for the
+/// d = 0.25 mm of common sand (Beladjine, Ammi, Oger and Valance, "Collision process between an
+/// incident bead and a three-dimensional granular packing", 2007). Slower grains slide and settle.
+/// `gravity` in m/s^2.
+float slowest_splash(float gravity);
 
 /// What of a frame decides limits: of the matter that moves, the values that one in a hundred is
 /// above.
 struct FoamMaxima {
-  std::uint64_t moving = 0;                         ///< particles faster than the slowest wave twice over
+  std::uint64_t moving = 0;                         ///< particles fast enough to emit
   float speed = 0;                                  ///< m/s
   float trapped_air = 0, crest = 0, vorticity = 0;  ///< m/s, 1/m, m/s
 };

@@ -62,6 +62,7 @@ void set_limits(FoamRules& rules, const model::Foam& foam, const FoamFound& foun
   rules.speed = cause(found.speed, 1, foam.speed);
   rules.trapped_air = of(found.trapped_air, foam.trapped_air);
   rules.crest = of(found.crest, foam.crest);
+  if (rules.dust) rules.crest.share = 0;  // grains have no waves: what flies whole stays whole
   rules.vorticity = of(found.vorticity, foam.vorticity);
 }
 

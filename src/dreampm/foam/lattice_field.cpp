@@ -26,7 +26,7 @@ NodeAxis NodeAxis::over(const Room& room, int axis, float width) {
   const float from = room.box.min[axis], length = room.box.max[axis] - from;
   NodeAxis made;
   made.periodic = room.periodic[a];
-  made.low = !made.periodic && room.wall(axis, false), made.high = !made.periodic && room.wall(axis, true);
+  made.low = room.wall(axis, false), made.high = room.wall(axis, true);
   if (made.periodic) {  // by whole bricks
     made.cells = 4 * std::max(1, static_cast<int>(std::lround(length / (4 * width))));
     width = length / static_cast<float>(made.cells);

@@ -20,7 +20,10 @@ struct Room {
   Box3f box{};                     ///< m
   std::array<bool, 6> is_wall{};   ///< x_min, x_max, y_min, y_max, z_min, z_max
   std::array<bool, 3> periodic{};  ///< axes whose ends meet
-  bool wall(int axis, bool high) const { return is_wall[static_cast<std::size_t>(2 * axis + (high ? 1 : 0))]; }
+  /// No end of a periodic axis is a wall.
+  bool wall(int axis, bool high) const {
+    return !periodic[static_cast<std::size_t>(axis)] && is_wall[static_cast<std::size_t>(2 * axis + (high ? 1 : 0))];
+  }
   /// `p` where a periodic axis has it between its ends.
   Vec3f wrapped(Vec3f p) const;
   /// The shortest way from `a` to `b`.

@@ -7,6 +7,13 @@ namespace {
 using namespace foam;
 
 constexpr float surface_tension = 0.072f, density = 1000;  ///< N/m and kg/m^3, of water
+constexpr float grain = 0.25e-3f;                          ///< m, the diameter
+
+/// What is slower emits nothing [m/s].
+float least_speed(const FoamRules& rules) {
+  const float gravity = std::max(1.0f, length(rules.gravity));
+  return rules.dust ? slowest_splash(gravity) : 2 * slowest_wave(gravity);
+}
 
 /// The value that one in a hundred is above; 0 of none.
 float high(std::vector<float>& values) {
@@ -21,9 +28,11 @@ float high(std::vector<float>& values) {
 
 float slowest_wave(float gravity) { return std::sqrt(std::sqrt(4 * gravity * surface_tension / density)); }
 
+float slowest_splash(float gravity) { return 40 * std::sqrt(gravity * grain); }
+
 FoamMaxima foam_maxima(const FoamMatter& matter, std::span<const Obstacle> obstacles, const FoamRules& rules) {
   FoamMaxima out;
-  const float slow = 2 * slowest_wave(std::max(1.0f, length(rules.gravity)));
+  const float slow = least_speed(rules);
   const std::size_t n = matter.position.size();
   out.moving = parallel_reduce(n, std::uint64_t{0},
                                [&](std::uint64_t& sum, std::size_t i) { sum += length(matter.velocity[i]) > slow; });
@@ -52,14 +61,14 @@ FoamFound found_limits(std::span<const FoamMaxima> frames, const FoamRules& rule
     return count > 0 ? static_cast<float>(sum / static_cast<double>(count)) : 0.0f;
   };
   // A tenth to all of the mean of the frames' maxima (Bender and others, SPlisHSPlasH), and never
-  // so low that what keeps its surface would foam.
+  // so low that what keeps its surface would foam, or a heap that slides would smoke.
   const auto limits = [&](float most, float least) {
     const float from = std::max(least, 0.1f * most);
     return FoamCause{1, from, std::max(most, 2 * from)};
   };
-  const float slow = slowest_wave(std::max(1.0f, length(rules.gravity)));
-  return {limits(mean(&FoamMaxima::speed), 2 * slow), limits(mean(&FoamMaxima::trapped_air), slow),
-          limits(mean(&FoamMaxima::crest), 0.25f / rules.scale), limits(mean(&FoamMaxima::vorticity), 2 * slow)};
+  const float slow = least_speed(rules), meeting = rules.dust ? image_factor * slow : 0.5f * slow;
+  return {limits(mean(&FoamMaxima::speed), slow), limits(mean(&FoamMaxima::trapped_air), meeting),
+          limits(mean(&FoamMaxima::crest), 0.25f / rules.scale), limits(mean(&FoamMaxima::vorticity), slow)};
 }
 
 }  // namespace dreampm

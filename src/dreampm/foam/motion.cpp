@@ -46,7 +46,7 @@ bool hold(One& one, const Between& between) {
   one.position = room.wrapped(one.position);
   for (int a = 0; a < 3; ++a)
     for (const bool high : {false, true}) {
-      if (!room.wall(a, high) || room.periodic[static_cast<std::size_t>(a)]) continue;
+      if (!room.wall(a, high)) continue;
       const float wall = high ? room.box.max[a] - reach : room.box.min[a] + reach;
       if (high ? one.position[a] <= wall : one.position[a] >= wall) continue;
       one.position[a] = wall;

@@ -19,13 +19,16 @@ inline constexpr float crest_cosine = 0.6f;
 struct Causes {
   float speed = 0, crest = 0, trapped_air = 0, vorticity = 0;
 };
-inline Causes causes_of(const Measures::At& m, const Vec3f& velocity) {
+/// `hit`: how fast something came at it since the frame before [m/s]. Of grains at rest that is all
+/// there is: they stop what hits them within a frame.
+inline Causes causes_of(const Measures::At& m, const Vec3f& velocity, float hit = 0) {
   Causes c;
-  c.speed = length(velocity);
+  const float own = length(velocity);
+  c.speed = std::max(own, hit);
   if (m.fill < drop_fill || !(c.speed > 0)) return c;
-  c.trapped_air = m.trapped_air * m.near_surface;
+  c.trapped_air = std::max(m.trapped_air, image_factor * hit) * m.near_surface;
   c.vorticity = m.vorticity * m.near_surface;
-  if (dot(velocity, m.outward) >= crest_cosine * c.speed) c.crest = m.curvature * m.near_surface;
+  if (dot(velocity, m.outward) >= crest_cosine * own) c.crest = m.curvature * m.near_surface;
   return c;
 }
 

@@ -170,7 +170,11 @@ Image read_exr_colors(const fs::path& file) {
     fail_input("{}: has the channels {}; R, G and B are wanted", file.string(), fmt::join(names, ", "));
   }
   Image out{p.width, p.height, std::vector<Vec3f>(r->values.size())};
-  for (std::size_t i = 0; i < out.linear.size(); ++i) out.linear[i] = {r->values[i], g->values[i], b->values[i]};
+  const auto width = static_cast<std::size_t>(p.width);
+  for (std::size_t i = 0; i < out.linear.size(); ++i) {
+    out.linear[i] = {r->values[i], g->values[i], b->values[i]};
+    if (!is_finite(out.linear[i])) fail_input("{}: pixel ({}, {}) is not finite", file.string(), i % width, i / width);
+  }
   return out;
 }
 

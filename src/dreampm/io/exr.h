@@ -43,7 +43,7 @@ ExrPicture read_exr(const std::filesystem::path& file);
 ExrPicture decode_exr(std::string_view bytes, const std::string& name);
 
 /// The channels R, G and B of a picture, the part of it that there are values of. Throws InputError
-/// as read_exr does, and where one of the three is missing.
+/// as read_exr does, where one of the three is missing, and where a value is not finite.
 Image read_exr_colors(const std::filesystem::path& file);
 
 /// Writes the channels by scan lines, compressed without loss (ZIP), whole or not at all. Throws

@@ -15,10 +15,6 @@ namespace {
 constexpr const char* color_parts[3] = {"red", "green", "blue"};
 constexpr const char* color_name = "color";
 
-std::uint8_t byte_of(float linear) {
-  return static_cast<std::uint8_t>(std::lround(255 * srgb_from_linear(std::clamp(linear, 0.0f, 1.0f))));
-}
-
 bool is_whole(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
 
 /// "vorticity" of "vorticity_x"; empty of others.
@@ -52,7 +48,7 @@ void write_ply_attributes(ByteSink& out, const VertexAttributes& attributes, std
     for (std::size_t c = 0; c < a.width(); ++c) {
       const float value = a.values[vertex * a.width() + c];
       if (a.kind == AttributeKind::color)
-        out.value(byte_of(value));
+        out.value(srgb_byte(value));
       else if (a.kind == AttributeKind::whole)
         out.value(static_cast<std::int32_t>(std::lround(value)));
       else

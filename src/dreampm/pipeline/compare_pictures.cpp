@@ -81,9 +81,13 @@ RgbImage beside(const RgbImage& a, const RgbImage& b, double gain) {
 
 std::vector<Comparison> compare_pictures(const fs::path& a, const fs::path& b, const fs::path& out, int first,
                                          int last) {
+  for (const fs::path& each : {a, b})
+    if (!fs::exists(each)) fail_input("{}: no such file or folder; give two runs or two pictures", each.string());
   if (fs::is_directory(a) != fs::is_directory(b))
     fail_input("{} and {} are a folder and a file; give two runs or two pictures", a.string(), b.string());
-  if (!fs::is_directory(a))
+  const bool runs = fs::is_directory(a);
+  if (!runs && (first > 0 || last > 0)) fail_input("{} is a picture; frames are chosen of two runs", a.string());
+  if (!runs)
     return {compare(a, b, fmt::format("{} and {}", a.filename().string(), b.filename().string()),
                     out / fmt::format("compare_{}_{}.png", a.stem().string(), b.stem().string()))};
   const RunFolder left = open_run(a), right = open_run(b);

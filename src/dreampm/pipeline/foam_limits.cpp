@@ -116,7 +116,7 @@ double most_volume(const RunFolder& run, const std::vector<int>& frames, const s
 }
 
 /// Raised where the measures of foam/fields.h change: what was found by others is found again.
-constexpr int measures_version = 1;
+constexpr int measures_version = 2;
 
 std::string key_of(const RunFolder& run, int frame, const FoamingKind& kind) {
   Hash64 hash;

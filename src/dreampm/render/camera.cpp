@@ -36,7 +36,8 @@ Camera::Camera(const model::Camera& camera, const Box3f& basin, int width, int h
   const Vec3d sharp = camera.focus_point.value_or(camera.fit_basin ? box.center() : camera.to);
   const double focus = camera.focus.value_or(dot(sharp - view.eye, view.forward));
   if (lens_radius_ > 0 && !(focus > 0))
-    fail_input("render: the camera's focus lies {} m before the eye; give a point that it sees", focus);
+    fail_input("render.camera.focus lies {:.4g} m behind the eye; give a point that it sees, or a distance above 0",
+               -focus);
   focus_ = static_cast<float>(focus);
 }
 

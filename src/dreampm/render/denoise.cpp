@@ -115,7 +115,7 @@ DenoiserState find_denoiser() {
 
 void check_denoiser() {
   if (const DenoiserState state = find_denoiser(); !state.found)
-    fail_input("render.denoise is true, but {}; or set render.denoise to false", state.text);
+    fail_input("render.denoise: {}; or leave out render.denoise and --denoise", state.text);
 }
 
 namespace {

@@ -76,23 +76,21 @@ Vec3f night(const Vec3f& d) {
 
 }  // namespace
 
-Environment read_environment(const model::Light& light) {
+Environment read_environment(const model::Light& light) try {
   Image image = read_exr_colors(light.environment);
   if (image.width != 2 * image.height)
     fail_input("{}: {} x {} pixels; an environment is twice as wide as high: longitude across, latitude down",
                light.environment, image.width, image.height);
   const auto strength = static_cast<float>(light.strength);
   double sum = 0;
-  for (std::size_t i = 0; i < image.linear.size(); ++i) {
-    Vec3f& c = image.linear[i];
-    if (!is_finite(c))
-      fail_input("{}: pixel ({}, {}) is not finite", light.environment, i % static_cast<std::size_t>(image.width),
-                 i / static_cast<std::size_t>(image.width));
+  for (Vec3f& c : image.linear) {
     c = max(c, Vec3f{}) * strength;  // resampling leaves little negative ones
     sum += static_cast<double>(luminance(c));
   }
   if (!(sum > 0)) fail_input("{}: black all over; an environment has light", light.environment);
   return {image.width, image.height, std::move(image.linear), static_cast<float>(light.turn) * degree};
+} catch (const InputError& e) {
+  fail_input("render.light.environment: {}", e.what());
 }
 
 Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(light.sun.strength > 0) {

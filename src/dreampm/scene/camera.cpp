@@ -18,7 +18,7 @@ Field<Camera> camera_from() {
 
 /// A distance or a point.
 Field<Camera> focus() {
-  const Range range = above_zero("m");
+  const Range range = between(1e-6, 1e9, "m");
   return Field<Camera>{"focus",
                        [range](Reading& in, const YamlNode& n, const std::string& path, Camera& out) {
                          out.focus.reset(), out.focus_point.reset();
@@ -90,8 +90,7 @@ void check_shutter(Reading& in, const YamlNode* render, const model::Scene& scen
   if (!(scene.render.camera.shutter > 0)) return;
   const std::vector<std::string>& kept = scene.output.attributes;
   if (std::find(kept.begin(), kept.end(), "velocity") != kept.end()) return;
-  const YamlNode* camera = render && render->is_map() ? render->find("camera") : nullptr;
-  const YamlNode* shutter = camera && camera->is_map() ? camera->find("shutter") : nullptr;
+  const YamlNode* shutter = find_in(find_in(render, "camera"), "shutter");
   in.problems.error(shutter ? shutter->at : Place{},
                     fmt::format("render.camera.shutter is {}: blur needs velocity in output.particles.attributes",
                                 scene.render.camera.shutter));

@@ -230,17 +230,23 @@ Field<T> text(std::string key, std::string T::* member) {
   return f;
 }
 
-/// A list of texts, at least one: `what` says of which things each is the name. Written only if not
-/// empty.
+/// A list of texts, at least one and none twice: `what` says of which things each is the name.
+/// Written only if not empty.
 template <class T>
 Field<T> names_of_things(std::string key, std::vector<std::string> T::* member, std::string what) {
   return Field<T>{std::move(key),
                   [=](Reading& in, const YamlNode& n, const std::string& path, T& out) {
                     if (!expect_list(in.problems, n, path)) return;
                     if (n.items.empty()) in.problems.error(n.at, fmt::format("{} is empty: give a {}", path, what));
-                    for (std::size_t i = 0; i < n.items.size(); ++i)
-                      if (const auto name = read_text(in.problems, n.items[i], fmt::format("{}[{}]", path, i)))
-                        (out.*member).push_back(*name);
+                    std::vector<std::string>& list = out.*member;
+                    for (std::size_t i = 0; i < n.items.size(); ++i) {
+                      const auto name = read_text(in.problems, n.items[i], fmt::format("{}[{}]", path, i));
+                      if (!name) continue;
+                      if (std::find(list.begin(), list.end(), *name) != list.end())
+                        in.problems.error(n.items[i].at, fmt::format("{} has '{}' twice", path, *name));
+                      else
+                        list.push_back(*name);
+                    }
                   },
                   [=](const T& t, const std::string& k, YamlNode& map) {
                     std::vector<YamlNode> items;
@@ -252,7 +258,15 @@ Field<T> names_of_things(std::string key, std::vector<std::string> T::* member, 
 
 template <class T, class M>
 Field<T> vector(std::string key, M T::* member, Range range = {}) {
-  return plain(std::move(key), member, within(range, read_vector), write_vector, vector_info(range));
+  const auto read = within(range, [](auto&... all) { return read_vector(all...); });
+  return plain(std::move(key), member, read, write_vector, vector_info(range));
+}
+
+/// Of red, green and blue.
+template <class T, class M>
+Field<T> color(std::string key, M T::* member, Range range = between(0, 1)) {
+  const auto read = within(range, [](auto&... all) { return read_vector(all..., "[red, green, blue]"); });
+  return plain(std::move(key), member, read, write_vector, vector_info(range));
 }
 
 /// A word of an enum: the i-th word is the enumerator with value i.

@@ -111,7 +111,7 @@ const Schema<Foam>& foam_schema() {
       limits("speed", &Foam::speed, "m/s").says("How fast matter must be, whatever the cause."),
       source("trapped_air", &Foam::trapped_air, "m/s")
           .says("Matter that meets matter or whirls: velocities that differ within `scale`."),
-      source("crest", &Foam::crest, "1/m").says("Sharp waves that move the way they point: the curvature."),
+      source("crest", &Foam::crest, "1/m").says("Sharp waves of liquids that move the way they point: the curvature."),
       source("vorticity", &Foam::vorticity, "m/s").says("Eddies at the surface: the vorticity times `scale`."),
       count("most", &Foam::most, 1, 100000000).says("The most that are there at once; more are thinned out by lot."),
       life(),
@@ -121,7 +121,7 @@ const Schema<Foam>& foam_schema() {
           .says("The speed at which bubbles rise in matter at rest; absent: by their radius in water."),
       number("drag", &Foam::drag, between(0, 1000))
           .says("Times the drag of air on a drop of that radius; 0: spray flies as in a vacuum."),
-      vector("color", &Foam::color, between(0, 1)).says("In sRGB; dust has the color of its matter."),
+      color("color", &Foam::color).says("In sRGB; dust has the color of its matter."),
   };
   return schema;
 }
@@ -160,8 +160,27 @@ std::vector<int> foaming_materials(const model::Scene& scene) {
   return list;
 }
 
+namespace {
+
+/// Reports lengths that no motion in the scene's box has.
+void check_lengths(Reading& in, const YamlNode& foam, const model::Scene& scene) {
+  const Vec3d box = scene.space.end() - scene.space.min;
+  const double widest = std::max({box.x, box.y, box.z}), cell = scene.space.dx();
+  const auto check = [&](const char* key, const std::optional<double>& value, double least, double most,
+                         const char* what) {
+    if (const YamlNode* n = foam.find(key); n && value && (*value < least || *value > most))
+      in.problems.error(n->at, fmt::format("foam.{} is {}: must be between {:.4g} and {:.4g} m, {}", key, n->text,
+                                           least, most, what));
+  };
+  check("scale", scene.foam->scale, 0.05 * cell, widest, "a 20th of a cell and the longest side of the box");
+  check("radius", scene.foam->radius, 1e-6, 0.1 * widest, "a micrometer and a tenth of the longest side of the box");
+}
+
+}  // namespace
+
 void check_foam(Reading& in, const YamlNode* foam, const model::Scene& scene) {
   if (!foam || !scene.foam || !foam->is_map()) return;
+  check_lengths(in, *foam, scene);
   std::vector<std::string> names;
   for (const Material& m : scene.materials) names.push_back(m.name);
   if (const YamlNode* of = foam->find("of"); of && of->kind == YamlNode::Kind::list) {

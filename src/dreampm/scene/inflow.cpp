@@ -68,7 +68,7 @@ Schema<Emitter> emitter_schema(const std::vector<Material>& materials) {
                 "as 0.11."),
       number("start", &Emitter::start, at_least_zero("s")).says("When it opens."),
       number("stop", &Emitter::stop, above_zero("s")).says("When it closes; absent: never."),
-      vector("color", &Emitter::color, between(0, 1))
+      color("color", &Emitter::color)
           .says("Of what comes in, in sRGB; absent: as matter of its material that has no color."),
       count("pool", &Emitter::pool, 1, 4000000000).must().says("The particles that it may give in all."),
       written_when<Emitter>(flag("recycle", &Emitter::recycle), [](const Emitter& e) { return e.recycle; })

@@ -36,8 +36,8 @@ const Schema<Sun>& sun_schema() {
 
 const Schema<Light>& light_schema() {
   static const Schema<Light> schema{
-      choice("sky", &Light::sky, {"clear", "studio", "night"})
-          .no_default()
+      written_when<Light>(choice("sky", &Light::sky, {"clear", "studio", "night"}).no_default(),
+                          [](const Light& l) { return !has_environment(l); })
           .says("A clear sky, soft boxes in a gray room, or darkness; absent: that of `stage.place`."),
       environment(),
       number("turn", &Light::turn, between(-360, 360, "degrees"))
@@ -68,18 +68,14 @@ Field<Render> stage_field() {
   return section("stage", &Render::stage, stage_schema()).says("What stands around the matter.");
 }
 
-void finish_light(const YamlNode& render, Render& out) {
-  if (!render.is_map()) return;
-  const YamlNode* const light = render.find("light");
-  const auto given = [&](const YamlNode* map, const char* key) {
-    return map && map->is_map() ? map->find(key) : nullptr;
-  };
-  if (!given(light, "sky"))
+void finish_light(const YamlNode* render, Render& out) {
+  const YamlNode* const light = find_in(render, "light");
+  if (!find_in(light, "sky"))
     out.light.sky = out.stage.place == model::Place::studio  ? SkyKind::studio
                     : out.stage.place == model::Place::night ? SkyKind::night
                                                              : SkyKind::clear;
   const bool sunny = out.light.sky == SkyKind::clear && !has_environment(out.light);
-  if (!sunny && !given(light, "sun")) out.light.sun.strength = 0;
+  if (!sunny && !find_in(light, "sun")) out.light.sun.strength = 0;
 }
 
 }  // namespace dreampm::scene

@@ -95,7 +95,7 @@ Field<Look> preset() {
   for (const LookPreset& p : look_presets()) names.emplace_back(p.name);
   return Field<Look>{"preset",
                      [names](Reading& in, const YamlNode& n, const std::string& path, Look& out) {
-                       if (const auto name = read_word(in.problems, n, path, names)) out = *look_preset(*name);
+                       if (const auto name = read_word(in.problems, n, path, names)) out = look_preset(*name)->look;
                      },
                      {}}
       .takes(word_info(names))
@@ -114,16 +114,16 @@ const Schema<Look>& look_schema() {
       number("ior", &Look::ior, between(1, 3))
           .when(is(LookType::dielectric), "type dielectric")
           .says("The index of refraction."),
-      vector("absorption", &Look::absorption, between(0, 1e6, "1/m"))
+      color("absorption", &Look::absorption, between(0, 1e6, "1/m"))
           .when(is(LookType::dielectric), "type dielectric")
           .says("Of red, green and blue light on its way through the medium."),
-      vector("scattering", &Look::scattering, between(0, 1e6, "1/m"))
+      color("scattering", &Look::scattering, between(0, 1e6, "1/m"))
           .when(is(LookType::dielectric), "type dielectric")
           .says("Of red, green and blue light within the medium: what makes milk white; 0: clear."),
       number("anisotropy", &Look::anisotropy, between(-0.95, 0.95))
           .when(is(LookType::dielectric), "type dielectric")
           .says("The mean cosine of scattering: above 0 forward."),
-      vector("color", &Look::color, between(0, 1))
+      color("color", &Look::color)
           .when([](const Look& l) { return l.type != LookType::dielectric; }, "types other than dielectric")
           .no_default()
           .says("In sRGB; absent: red for materials, gray for colliders, and the color of wood, steel or plastic."),
@@ -159,6 +159,16 @@ void give_defaults(Look& look, const YamlNode& given) {
     if (!given.find("color")) look.color = d.color;
     if (!given.find("roughness")) look.roughness = d.roughness;
   }
+}
+
+/// Reports a type that is not its preset's.
+void check_preset(Reading& in, const YamlNode& given, const std::string& path, const Look& look) {
+  const YamlNode *const preset = find_in(&given, "preset"), *const type = find_in(&given, "type");
+  const LookPreset* const known = preset && type ? look_preset(preset->text) : nullptr;
+  if (known && known->look.type != look.type)
+    in.problems.error(type->at,
+                      fmt::format("{}.type is {}, and preset {} is {}: leave out one of them", path, type->text,
+                                  preset->text, model::look_type_names[static_cast<std::size_t>(known->look.type)]));
 }
 
 const Schema<Cut>& cut_schema() {
@@ -269,6 +279,7 @@ void read_look(Reading& in, const YamlNode& node, const std::string& path, Look&
     out.color = usual;
   }
   read_map(in, node, path, look_schema(), out);
+  check_preset(in, node, path, out);
   give_defaults(out, node);
   if (out.type == LookType::dielectric) out.color = Look{}.color;  // it has none, whatever was usual here
 }
@@ -278,8 +289,7 @@ void read_looks(Reading& in, const YamlNode& root, model::Scene& scene) {
   std::vector<std::string> names;
   for (const Material& m : scene.materials) {
     names.push_back(m.name);
-    const YamlNode* const own = materials && materials->is_map() ? materials->find(m.name) : nullptr;
-    const YamlNode* const preset = own && own->is_map() ? own->find("preset") : nullptr;
+    const YamlNode* const preset = find_in(find_in(materials, m.name), "preset");
     scene.render.looks[m.name] = default_look(m.type, preset ? preset->text : "", info_of(m).liquid);
   }
   for (const Collider& c : scene.colliders) {

@@ -146,7 +146,7 @@ Schema<Body> body_schema(const std::vector<Material>& materials) {
       shape_field(ShapeUse::body),
       vector("velocity", &Body::velocity, any_number("m/s")).says("At the start."),
       vector("spin", &Body::spin, any_number("rad/s")).says("At the start, about its center."),
-      vector("color", &Body::color, between(0, 1)).says("In sRGB; absent: the look of its material."),
+      color("color", &Body::color).says("In sRGB; absent: the look of its material."),
       nested<Body>("sample", {choice("pattern", &Body::pattern, {"jitter", "lattice", "poisson"})
                                   .says("A lattice with random offsets, a plain lattice, or Poisson disks.")})
           .says("How its particles are placed."),
@@ -283,7 +283,7 @@ void check_cuts(Reading& in, const YamlNode* bodies, const model::Scene& scene) 
   for (const Collider& c : scene.colliders)
     if (!c.pin) names.push_back(c.name);
   for (const Entry& body : bodies->entries) {
-    const YamlNode* cut = body.value.is_map() ? body.value.find("cut") : nullptr;
+    const YamlNode* cut = find_in(&body.value, "cut");
     if (!cut || cut->kind != YamlNode::Kind::list) continue;
     for (const YamlNode& n : cut->items)
       if (!n.text.empty() && std::find(names.begin(), names.end(), n.text) == names.end())

@@ -43,6 +43,10 @@ bool replaces(const YamlNode& base, const YamlNode& over, const Path& path) {
     const std::string_view form = form_of(over);
     return !form.empty() && form != form_of(base);
   }
+  // A preset has a type.
+  if (n >= 2 && path[n - 2] == "looks" &&
+      ((base.find("preset") && over.find("type")) || (base.find("type") && over.find("preset"))))
+    return true;
   const bool typed = n >= 2 && contains({"materials", "looks", "walls", "fields", "probes"}, path[n - 2]);
   const YamlNode* before = base.find("type");
   const YamlNode* after = over.find("type");
@@ -79,6 +83,7 @@ const std::vector<Alternative>& alternatives() {
       {"box", {"min", "max"}, {"size"}},
       {"camera", {"from", "to"}, {"fit", "azimuth", "elevation", "fill"}},
       {"camera", {"aperture"}, {"fstop"}},
+      {"light", {"sky"}, {"environment"}},
       {"", {"bulk_modulus"}, {"max_compression"}},
   };
   return table;

@@ -50,7 +50,7 @@ void check_voxel(Reading& in, const YamlNode& root, const model::Scene& scene) {
   const double per_dx = std::cbrt(scene.space.particles_per_cell), voxel = scene.surface.voxel * per_dx;
   if (voxel >= 0.125 && voxel <= 2 * (1 + 1e-12)) return;
   const YamlNode* surface = root.find("surface");
-  const YamlNode* at = surface && surface->is_map() ? surface->find("voxel") : nullptr;
+  const YamlNode* at = find_in(surface, "voxel");
   in.problems.error(at ? at->at : root.find("space")->at,
                     fmt::format("surface.voxel is {}: must be between {:.4g} and {:.4g} dx, an eighth of the spacing "
                                 "to twice it",
@@ -67,7 +67,7 @@ model::Scene read_scene(Reading& in, const YamlNode& root, const std::string& va
   }
   read_map(in, root, "", scene_schema(), scene, own_keys());
   check_cuts(in, root.find("bodies"), scene);
-  if (const YamlNode* render = root.find("render")) finish_light(*render, scene.render);
+  finish_light(root.find("render"), scene.render);
   read_looks(in, root, scene);
   check_shutter(in, root.find("render"), scene);
   check_foam(in, root.find("foam"), scene);

@@ -47,7 +47,7 @@ Field<Render> camera();
 /// change.
 Field<Render> light_field();
 Field<Render> stage_field();
-void finish_light(const YamlNode& render, Render& out);
+void finish_light(const YamlNode* render, Render& out);
 const Schema<Video>& video_schema();
 const Schema<Material>& material_schema();
 
@@ -175,10 +175,14 @@ ValueInfo probes_info();
 
 /// Reads a look over the one that holds without it.
 void read_look(Reading& in, const YamlNode& node, const std::string& path, Look& out);
-/// Gives every material and collider its look: the one in the map `render` (or null), else
-/// glass-clear water for liquids, matte gray for colliders and a matte color for the rest. Checks
-/// the names in its `cut`.
+/// Gives every material and collider its look: the one in the scene's render.looks, else
+/// `default_look` for materials and matte gray for colliders. Checks the names in render.cut.
 void read_looks(Reading& in, const YamlNode& root, model::Scene& scene);
+
+/// The value of a key of what may be null, or no map; null if it is not there.
+inline const YamlNode* find_in(const YamlNode* map, std::string_view key) {
+  return map && map->is_map() ? map->find(key) : nullptr;
+}
 
 /// Checks that what is blurred has velocities.
 void check_shutter(Reading& in, const YamlNode* render, const model::Scene& scene);

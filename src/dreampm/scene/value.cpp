@@ -159,12 +159,12 @@ std::optional<std::string> read_text(Problems& problems, const YamlNode& node, c
   return std::nullopt;
 }
 
-std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path,
-                                 const Range& range) {
+std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path, const Range& range,
+                                 const char* parts) {
   if (node.kind != YamlNode::Kind::list || node.items.size() != 3) {
     const std::string is =
         node.kind == YamlNode::Kind::list ? fmt::format("a list of {}", node.items.size()) : node.describe();
-    problems.error(node.at, fmt::format("{} is {}: must be a list of 3 numbers, [x, y, z]", path, is));
+    problems.error(node.at, fmt::format("{} is {}: must be a list of 3 numbers, {}", path, is, parts));
     return std::nullopt;
   }
   Vec3d v;

@@ -44,8 +44,9 @@ std::optional<std::int64_t> read_count(Problems& problems, const YamlNode& node,
                                        std::int64_t min, std::int64_t max);
 std::optional<bool> read_flag(Problems& problems, const YamlNode& node, const std::string& path);
 std::optional<std::string> read_text(Problems& problems, const YamlNode& node, const std::string& path);
-/// A list of three numbers, each in the range.
-std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path, const Range& range);
+/// A list of three numbers, each in the range; `parts` says which.
+std::optional<Vec3d> read_vector(Problems& problems, const YamlNode& node, const std::string& path, const Range& range,
+                                 const char* parts = "[x, y, z]");
 /// The word itself if it is one of `words`.
 std::optional<std::string> read_word(Problems& problems, const YamlNode& node, const std::string& path,
                                      std::span<const std::string> words);

@@ -58,13 +58,6 @@ std::vector<double> numbers_of(const Pose& pose) {
 }
 Pose pose_from(const std::vector<double>& n) { return {{n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]}}; }
 
-/// True if a member is what it is in a new world.
-template <class T>
-bool is_unset(const T& value, const T& unset) {
-  return value == unset;
-}
-bool is_unset(const std::vector<Arrival>& value, const std::vector<Arrival>&) { return value.empty(); }
-
 template <class R>
 class WorldWriter {
  public:
@@ -81,7 +74,7 @@ class WorldWriter {
             return;
           }
         if constexpr (F::use.sparse)
-          if (is_unset(value, unset)) return;
+          if (value == unset) return;
         put(name, value);
       }
     });
@@ -281,10 +274,8 @@ class WorldReader {
       if (arrivals.back().emitter >= world_.emitters.size())
         from_.refuse(name, fmt::format("there is no emitter of number {}", arrivals.back().emitter));
     }
-    const auto overlap = [](const Arrival& a, const Arrival& b) { return b.first_id - a.first_id < a.count; };
-    const auto falls = [](const Arrival& a, const Arrival& b) { return b.first_id < a.first_id; };
-    if (std::adjacent_find(arrivals.begin(), arrivals.end(), [&](const Arrival& a, const Arrival& b) {
-          return falls(a, b) || overlap(a, b);
+    if (std::adjacent_find(arrivals.begin(), arrivals.end(), [](const Arrival& a, const Arrival& b) {
+          return b.first_id < std::uint64_t{a.first_id} + a.count;
         }) != arrivals.end())
       from_.refuse(name, "batches of matter share particles, or do not rise by their ids");
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "dreampm/backend/registry.h"
+#include "dreampm/base/narrow.h"
 #include "dreampm/run/engine.h"
 #include "dreampm/setup/start.h"
 #include "dreampm/solver/motion_by_id.h"
@@ -49,24 +52,25 @@ class Refinement {
         motion_(motion),
         world_(std::move(empty)),
         margin_(just_outside * world_.sets.front().spacing()) {
+    number_wholes();
     take_clock();
+    take_arrivals();
   }
 
   /// Fills the world; how its particles move.
   Motion<R> take() {
     MotionById<R> by_id(coarse_.sets.size());
-    std::uint32_t next = 0;
     for (std::size_t s = 0; s < coarse_.sets.size(); ++s) {
-      first_.push_back(next);
       std::vector<ParticleSeed> seeds;
       const ParticleSetView<R> particles(coarse_, s);
       particles.for_each([&](std::size_t p, const Vec3d& x) {
         const Mat3d shape = deformation(particles, coarse_.sets[s].material, p);
         const auto v = static_cast<Vec3d>(motion_.sets[s].velocity[p]);
         const auto c = static_cast<Mat3d>(motion_.sets[s].gradient[p]);
+        const std::uint32_t first = first_part(particles.id(p));
         for (std::uint32_t part = 0; part < parts; ++part) {
           const Vec3d off = shape * (corner(part) * world_.sets[s].spacing());
-          seeds.push_back({next++, inside(x + off), v + c * off, c});
+          seeds.push_back({first + part, inside(x + off), v + c * off, c});
         }
       });
       if (seeds.empty()) continue;
@@ -74,7 +78,7 @@ class Refinement {
       insert<R>(world_, s, seeds);
       take_state(s);
     }
-    if (!world_.emitters.empty()) world_.next_id = next;
+    if (!world_.emitters.empty()) world_.next_id = parts * static_cast<std::uint32_t>(wholes_.size());
     Motion<R> motion = by_id.ordered(world_);
     for (std::size_t s = 0; s < motion.sets.size(); ++s)
       for (std::size_t p = 0; p < motion.sets[s].energy.size(); ++p) {
@@ -88,6 +92,32 @@ class Refinement {
   World<R>& world() { return world_; }
 
  private:
+  struct Whole {
+    std::uint32_t id;
+    std::size_t p;  ///< its place in its set
+  };
+
+  /// Parts have the order of their wholes by id, so that what came in together stays one range.
+  void number_wholes() {
+    for (std::size_t s = 0; s < coarse_.sets.size(); ++s) {
+      const std::span<const std::uint32_t> ids = ParticleSetView<R>(coarse_, s).ids();
+      for (std::size_t p = 0; p < ids.size(); ++p) wholes_.push_back({ids[p], p});
+    }
+    narrow<std::uint32_t>(wholes_.size() * parts, "particles");
+    std::ranges::sort(wholes_, {}, &Whole::id);
+  }
+  /// The id of the first part of particle `id`, or of the next one that is there.
+  std::uint32_t first_part(std::uint64_t id) const {
+    return parts * static_cast<std::uint32_t>(std::ranges::lower_bound(wholes_, id, {}, &Whole::id) - wholes_.begin());
+  }
+
+  void take_arrivals() {
+    for (const Arrival& a : coarse_.arrivals) {
+      const std::uint32_t first = first_part(a.first_id), end = first_part(std::uint64_t{a.first_id} + a.count);
+      if (end > first) world_.arrivals.push_back({first, end - first, a.emitter, a.time});
+    }
+  }
+
   void take_clock() {
     world_.step = coarse_.step, world_.frame = coarse_.frame, world_.time = coarse_.time;
     world_.emitted_until = coarse_.emitted_until, world_.left = coarse_.left * parts;
@@ -116,7 +146,7 @@ class Refinement {
 
   /// The particle that particle `p` is a part of.
   std::size_t whole_of(std::size_t s, std::size_t p) const {
-    return (ParticleSetView<R>(world_, s).id(p) - first_[s]) / parts;
+    return wholes_[ParticleSetView<R>(world_, s).id(p) / parts].p;
   }
 
   /// Each part has the state of the whole.
@@ -135,7 +165,7 @@ class Refinement {
   const Motion<R>& motion_;
   World<R> world_;
   double margin_;
-  std::vector<std::uint32_t> first_;  ///< ids of the first particle of each set
+  std::vector<Whole> wholes_;  ///< by rising ids
 };
 
 }  // namespace

@@ -68,6 +68,7 @@ struct Arrival {
   std::uint32_t first_id = 0, count = 0;
   std::uint32_t emitter = 0;  ///< its number in World::emitters
   double time = 0;            ///< s, when they came in
+  bool operator==(const Arrival&) const = default;
 };
 
 /// A sink. It takes out matter inside it when particles are sorted: every few steps.

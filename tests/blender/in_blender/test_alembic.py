@@ -12,16 +12,7 @@ sys.path.insert(0, str(SOURCE / "blender"))
 from core import ply  # noqa: E402
 
 FPS = 50
-SCENE = """dreampm: 1
-name: two-things
-space: {min: [0, 0, 0], max: [0.6, 0.4, 0.3], spacing: 0.03, walls: {ceiling: {type: open}}}
-time: {fps: 50, frames: 4}
-materials:
-  water: {type: newtonian, max_compression: 0.05}
-  jelly: {type: elastic, youngs_modulus: 2e4, poissons_ratio: 0.3}
-bodies:
-  column: {material: water, velocity: [0.5, 0, 0.1], shape: {box: {min: [0, 0, 0], max: [0.24, 0.3, 0.3]}}}
-  cube: {material: jelly, color: [1, 0.5, 0], shape: {box: {min: [0.36, 0, 0.06], max: [0.5, 0.14, 0.2]}}}
+SCENE = (SOURCE / "tests/python/two-things.yaml").read_text() + """\
 colliders: {post: {shape: {box: {min: [0.3, 0, 0.1], max: [0.33, 0.2, 0.2]}}}}
 surface: {attributes: [velocity, color, age]}
 render: {size: [64, 36]}
@@ -32,7 +23,7 @@ render: {size: [64, 36]}
 def folder(tmp_path_factory):
     folder = tmp_path_factory.mktemp("alembic")
     (folder / "scene.yaml").write_text(SCENE)
-    for call in (["run", "scene.yaml", "--out", "run"], ["surface", "run"]):
+    for call in (["run", "scene.yaml", "--out", "run", "--set", "time.frames=4"], ["surface", "run"]):
         subprocess.run([COMMAND, *call], cwd=folder, check=True, capture_output=True)
     return folder
 
@@ -151,11 +142,16 @@ def test_other_axes_and_some_frames(folder):
                                   rtol=1e-4)
 
 
-@pytest.mark.parametrize("more,why", [(["--frames", "3-9"], "frame 5 is not simulated"),
+@pytest.mark.parametrize("more,why", [(["--frames", "3-9"], "frame 5 is not simulated; it has 4 frames"),
                                       (["--frames", "4-2"], "must be A-B"),
                                       (["--out", "film.usd"], "ends with .abc"),
+                                      (["--out", "folder.abc"], "folder.abc: is a folder"),
+                                      (["--out", "scene.yaml/film.abc"], "film.abc: scene.yaml is no folder"),
+                                      (["--out", "/proc/film.abc"], "directory: '/proc/film.abc'"),
+                                      (["--scale", "0"], "--scale"),
                                       (["--what", "foam"], "the scene has no foam")])
 def test_what_cannot_be_written(folder, more, why):
+    (folder / "folder.abc").mkdir(exist_ok=True)
     done = convert(folder, *more)
     assert done.returncode == 2 and why in done.stderr, done.stderr
     assert not (folder / "film.usd").exists() and not list((folder / "run/export").glob(".*"))
@@ -165,6 +161,12 @@ def test_no_run(folder):
     done = subprocess.run([sys.executable, str(SOURCE / "python/dreampm/alembic.py"), "."], cwd=folder,
                           capture_output=True, text=True)
     assert done.returncode == 2 and "is no run" in done.stderr
+    (folder / "other").mkdir()
+    for text in ("{", "{}", "[1]"):
+        (folder / "other/run.json").write_text(text)
+        done = subprocess.run([sys.executable, str(SOURCE / "python/dreampm/alembic.py"), "other"], cwd=folder,
+                              capture_output=True, text=True)
+        assert done.returncode == 2 and "other: is no run" in done.stderr
 
 
 def test_the_command_says_who_writes_it(folder):
