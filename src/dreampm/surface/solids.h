@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dreampm/geometry/region.h"
 #include "dreampm/surface/sparse_field.h"
 #include "dreampm/surface/surface.h"
 #include "dreampm/surface/walls.h"
@@ -24,8 +25,10 @@ class Solids {
   float distance(const Vec3f& p) const;
   /// The direction away from the nearest solid, of length 1; 0 where no distance changes.
   Vec3f normal(const Vec3f& p) const;
-  /// Distances at count^3 points of a lattice, x fastest.
-  void distances(const Vec3f& first, float step, int count, float* to) const;
+  /// Computes the distances at many points, to the same bits.
+  void distances(std::span<const Vec3f> points, float* to) const;
+  /// The same at points of a lattice, counted in steps [m] from `first`.
+  void distances(const Vec3f& first, float step, std::span<const Vec3i> points, float* to) const;
   /// False where all of a box is farther than `reach` from the bounds of every solid.
   bool near(const Box3f& box) const;
   /// True where no solid reaches into the box.
@@ -41,8 +44,12 @@ class Solids {
     WettedSolid of;
     Box3d bounds;  ///< m, as it stands
   };
-  /// The gradient of the distance.
-  Vec3f slope(const Vec3f& p) const;
+  /// The points that are asked for together, at most.
+  static constexpr std::size_t at_once = 64;
+  template <class Place>
+  void ask_at(std::size_t count, const Place& place, float* to) const;
+  /// `points`: in the axes of the solids.
+  void ask(const PointColumns& points, float* to) const;
   Box3d standing_bounds(const WettedSolid& solid) const;
 
   std::vector<Solid> solids_;
