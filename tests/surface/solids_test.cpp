@@ -150,6 +150,22 @@ TEST(Solids, TheRimIsLevelWhereWaterMeetsGlass) {
   EXPECT_GT(rim, 50u);
 }
 
+TEST(Solids, ConvexEdgesAreEnteredAsFar) {
+  // Near an edge the way against the normal of one face runs along the other.
+  const Pose turned{{0.15, 0.13, 0.15}, Quaternion::about({0.3, 0.5, 0.2})};
+  const Tank tank({solid(Shape::box({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}), turned)}, 0.25f);
+  const surface::Solids all(tank.solids, {}, 3 * kH);
+  std::size_t faces = 0;
+  const TriMesh mesh = tank.wrapped(0.5f).mesh;
+  for (const auto& t : mesh.triangles) {
+    const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (all.distance(a) > 0) continue;
+    ++faces;
+    for (const Vec3f& p : {a, (a + b) / 2.0f, (a + b + c) / 3.0f}) EXPECT_NEAR(all.distance(p), -kDepth, 0.1f * kH);
+  }
+  EXPECT_GT(faces, 4000u);
+}
+
 TEST(Solids, AThinPlateIsNotPierced) {
   // 8 mm, and an overlap of 5 from either side.
   const Tank tank({solid(Shape::box({0.146, -0.1, -0.1}, {0.154, 0.4, 0.4}))}, 0.15f);

@@ -168,8 +168,12 @@ class Adding {
       if (v < cap.rim) continue;
       if (ground.solid) x = bounds_.solids.projected(x, 0);
       if (v < cap.foot) continue;
-      const Vec3f out = ground.solid ? bounds_.solids.normal(x) : n;
-      x -= out * (ground.solid ? bounds_.solids.depth(x, out, depth_) : depth_);
+      if (ground.solid) {
+        const Solids::WayIn way = bounds_.solids.way_in(x, bounds_.solids.normal(x), depth_);
+        x -= way.out * way.depth;
+      } else {
+        x -= n * depth_;
+      }
     }
   }
   /// Makes room for a shape's vertices, and adds its triangles.

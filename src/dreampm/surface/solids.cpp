@@ -130,18 +130,33 @@ Vec3f Solids::projected(Vec3f p, float off) const {
   return p;
 }
 
-float Solids::depth(const Vec3f& p, const Vec3f& n, float wanted) const {
+Solids::WayIn Solids::way_in(const Vec3f& p, const Vec3f& n, float wanted) const {
   constexpr int steps = 6;
   constexpr float share = 0.6f;  // of the way to the middle of a thin one
+  constexpr float least = 0.3f;  // that a distance changes by over the way; less: a middle
   const float step = wanted / steps;
   std::array<Vec3f, steps + 1> places;
   places[0] = p;
   for (int k = 1; k <= steps; ++k) places[static_cast<std::size_t>(k)] = p - n * (step * static_cast<float>(k));
   std::array<float, steps + 1> d;
   distances(places, d.data());
-  for (std::size_t k = 1; k <= steps; ++k)
-    if (d[k - 1] - d[k] < 0.3f * step) return share * step * static_cast<float>(k - 1);
-  return wanted;
+  bool straight = true;
+  for (std::size_t k = 1; k <= steps; ++k) straight &= d[k - 1] - d[k] >= least * step;
+  if (straight) return {n, wanted, true};
+  // Another face comes near: that of an edge, from which the distance leads away, or the other
+  // side.
+  Vec3f x = p;
+  for (int k = 1; k <= steps; ++k) {
+    const Probe at(*this, x, step_);
+    const float g2 = length2(at.slope);
+    if (g2 < least * least) break;
+    x -= at.slope * ((step * static_cast<float>(k) + at.distance) / g2);
+  }
+  const bool whole = distance(x) < -0.9f * wanted;
+  const Vec3f way = p - x;
+  const float length = dreampm::length(way);
+  if (!(length > 0)) return {n, 0, false};
+  return {way / length, whole ? length : share * length, whole};
 }
 
 bool Solids::clear_of(const Box3f& box) const {

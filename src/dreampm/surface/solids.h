@@ -35,9 +35,15 @@ class Solids {
   bool clear_of(const Box3f& box) const;
   /// The point of the surface nearest to p, where p lies near it: at distance `off` [m] of it.
   Vec3f projected(Vec3f p, float off) const;
-  /// The depth [m] at the point p of the surface that a mesh may reach down to, going against the
-  /// normal n: `wanted`, less where the solid is thin.
-  float depth(const Vec3f& p, const Vec3f& n, float wanted) const;
+  /// The way by which a mesh reaches into the solid at a point of its surface.
+  struct WayIn {
+    Vec3f out;    ///< the way goes against that direction, of length 1
+    float depth;  ///< m
+    bool whole;   ///< true if it ends as deep as wanted
+  };
+  /// The way at the point p, of normal n: as far from the surface as `wanted` [m], against n or, at
+  /// convex edges, away from them; where the solid is thin a part of the way to its middle.
+  WayIn way_in(const Vec3f& p, const Vec3f& n, float wanted) const;
 
  private:
   struct Solid {
