@@ -13,6 +13,7 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/math/srgb.h"
 #include "dreampm/pictures/frames.h"
+#include "dreampm/pipeline/loose_clouds.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
 #include "dreampm/surface/carry.h"
@@ -105,14 +106,6 @@ void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path
   write_mesh(target, result.mesh, shift, "in the unit and the axes of its particles", attributes);
 }
 
-void check_spacing(const LooseSurfaces& request) {
-  if (request.spacing && *request.spacing > 0 && std::isfinite(*request.spacing)) return;
-  if (request.spacing) fail_input("--spacing is {}: must be above 0", *request.spacing);
-  const std::optional<double> own = look_at_cloud(read_cloud(request.files[0]).points).spacing;
-  fail_input("files need --spacing, the distance between particles{}",
-             own ? fmt::format("; those of {} lie about {:.3g} apart", request.files[0], *own) : "");
-}
-
 }  // namespace
 
 std::vector<std::string> cloud_attributes() {
@@ -127,13 +120,15 @@ std::vector<fs::path> surface_files(const LooseSurfaces& request) {
     fail_input("--attributes are of the vertices of meshes; --type {} has none",
                request.type == model::SurfaceType::fog ? "fog" : "sdf");
   const std::vector<fs::path> names = loose_names(request.files, request.out, volume ? ".vdb" : ".ply");
-  check_spacing(request);
   check_attributes(request);
+  if (!request.spacing || !(*request.spacing > 0))
+    check_spacing(request.spacing, read_cloud(request.files[0]).points, request.files[0]);
   Progress progress("surface: file", names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (interrupted()) throw Interrupted(fmt::format("surface: interrupted before {}", request.files[i]));
     progress.update(i);
     const MovingCloud cloud = read_cloud(request.files[i]);
+    check_extent(cloud.points, *request.spacing, request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
     check_made_of(cloud, request, request.files[i]);
