@@ -270,6 +270,7 @@ void render_structs(nb::module_& m) {
       .key("voxel", &Surface::voxel)
       .key("smooth", &Surface::smooth)
       .key("overlap", &Surface::overlap)
+      .key("drop_life", &Surface::drop_life)
       .key("attributes", &Surface::attributes)
       .key("type", &Surface::type)
       .key("format", &Surface::format)

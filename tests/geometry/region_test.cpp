@@ -57,8 +57,11 @@ TEST(Region, ManyDistancesAtOnceHaveTheBitsOfOne) {
   Shape turned = at(BoxShape{{2, 4, 6}}, {1, 0.3, 0});
   turned.rotate_axis = {1, 2, 3}, turned.rotate_angle = 25;
   const Shape ball = at(SphereShape{1.5}, {0.5, 0.5, 2});
-  for (const Shape& shape : {turned, ball, at(BoxShape{{2, 4, 6}}, {1, 0.3, 0}), of(CylinderShape{1, 4}),
-                             of(BooleanShape{BooleanShape::Op::difference, {turned, ball}})}) {
+  for (const Shape& shape :
+       {turned, ball, at(BoxShape{{2, 4, 6}}, {1, 0.3, 0}), of(CylinderShape{1, 4}),
+        of(BooleanShape{BooleanShape::Op::difference, {turned, ball}}),
+        of(ContainerShape{.hollow = {turned}, .wall = 0.2, .cut = {}}),
+        of(ContainerShape{.hollow = {ball}, .wall = 0.2, .cut = {}, .form = ContainerShape::Form::shell})}) {
     const auto region = make(shape);
     const std::vector<Vec3d> points = points_about(region->bounds());
     std::array<std::vector<double>, 3> columns;

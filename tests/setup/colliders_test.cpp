@@ -17,6 +17,7 @@
 #include "dreampm/setup/assemble.h"
 #include "dreampm/setup/collider_mesh.h"
 #include "dreampm/setup/colliders.h"
+#include "dreampm/setup/in_time.h"
 #include "dreampm/solver/step.h"
 #include "dreampm/surface/attributes.h"
 
@@ -303,6 +304,22 @@ TEST(Containers, OneThatIsNoneIsToldWithItsPlace) {
   EXPECT_EQ(refused("{mold: {shape: {container: {intersection: [{sphere: {radius: 0.1}, center: [0, 0, 0]}, {sphere: "
                     "{radius: 0.1}, center: [1, 0, 0]}], wall: 0.02}}}}"),
             "walls.yaml:8:13: error: collider mold: the hollow of a container encloses nothing");
+}
+
+TEST(Colliders, StandInAFrameAsTheRunSaysElseAsTheyMove) {
+  model::Collider paddle;
+  paddle.name = "paddle", paddle.shape = Shape::box({0, 0, 0}, {0.1, 0.1, 0.1});
+  paddle.motion = model::Motion{};
+  paddle.motion->velocity = {1, 0, 0};
+  const SolidInTime solid(paddle, model::Space{}, Meshes(Meshes::Say::keep));
+  FrameRecord frame;
+  frame.time = 0.5;
+  frame.poses["crate"] = Pose{{0, 2, 0}};
+  EXPECT_EQ(solid.pose_in(frame), (Pose{{0.5, 0, 0}}));
+  frame.poses["paddle"] = Pose{{0, 0, 3}};
+  EXPECT_EQ(solid.pose_in(frame), (Pose{{0, 0, 3}}));
+  EXPECT_EQ(solid.pose_at(frame.time), (Pose{{0.5, 0, 0}}));
+  EXPECT_NEAR(solid.region_at(frame.time)->distance({0.05, 0.05, 0.02}), -0.02, 1e-9) << "before its pose";
 }
 
 TEST(Containers, MatterMayStartInTheHollow) {

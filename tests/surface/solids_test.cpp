@@ -68,6 +68,28 @@ Contact contact(const TriMesh& mesh, const std::vector<WettedSolid>& solids, flo
   return c;
 }
 
+TEST(Solids, ManyDistancesAtOnceHaveTheBitsOfOne) {
+  const Pose turned{{0.02, 0.01, 0}, Quaternion::about({0.3, 0.2, 0.1})};
+  const std::vector<WettedSolid> solids{solid(Shape::sphere({0.1, 0.1, 0.1}, 0.05)),
+                                        solid(Shape::box({0.2, 0, 0.1}, {0.25, 0.2, 0.2}), turned)};
+  const surface::Solids all(solids, {}, 3 * kH), first({&solids[0], 1}, {}, 3 * kH),
+      second({&solids[1], 1}, {}, 3 * kH);
+  std::vector<Vec3f> points;
+  for (int n = 0; n < 1000; ++n)
+    points.push_back(Vec3f{static_cast<float>(n % 10), static_cast<float>(n / 10 % 10), static_cast<float>(n / 100)} *
+                     0.03f);
+  std::vector<float> found(points.size());
+  all.distances(points, found.data());
+  std::size_t near = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(found[i], all.distance(points[i]));
+    EXPECT_EQ(found[i], std::min(first.distance(points[i]), second.distance(points[i])));
+    near += found[i] < all.reach();
+  }
+  EXPECT_GT(near, 50u);
+  EXPECT_LT(near, 950u);
+}
+
 TEST(Solids, LiquidAroundABallLiesOnIt) {
   const Tank tank({solid(Shape::sphere({0.15, 0.12, 0.15}, 0.06))}, 0.25f);
   for (const float overlap : {0.0f, 0.5f}) {
@@ -126,6 +148,22 @@ TEST(Solids, TheRimIsLevelWhereWaterMeetsGlass) {
     EXPECT_NEAR(p.y, kLevel, 0.4f * kH);
   }
   EXPECT_GT(rim, 50u);
+}
+
+TEST(Solids, ConvexEdgesAreEnteredAsFar) {
+  // Near an edge the way against the normal of one face runs along the other.
+  const Pose turned{{0.15, 0.13, 0.15}, Quaternion::about({0.3, 0.5, 0.2})};
+  const Tank tank({solid(Shape::box({-0.05, -0.05, -0.05}, {0.05, 0.05, 0.05}), turned)}, 0.25f);
+  const surface::Solids all(tank.solids, {}, 3 * kH);
+  std::size_t faces = 0;
+  const TriMesh mesh = tank.wrapped(0.5f).mesh;
+  for (const auto& t : mesh.triangles) {
+    const Vec3f &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    if (all.distance(a) > 0) continue;
+    ++faces;
+    for (const Vec3f& p : {a, (a + b) / 2.0f, (a + b + c) / 3.0f}) EXPECT_NEAR(all.distance(p), -kDepth, 0.1f * kH);
+  }
+  EXPECT_GT(faces, 4000u);
 }
 
 TEST(Solids, AThinPlateIsNotPierced) {

@@ -46,7 +46,8 @@ struct Surface {
   std::vector<std::string> attributes{"velocity"};  ///< of the vertices; of surface_attributes
   SurfaceType type = SurfaceType::mesh;
   SurfaceFormat format = SurfaceFormat::ply;
-  double overlap = 0.5;  ///< spacings that it reaches into walls and colliders, 0 to 1
+  double overlap = 0.5;               ///< spacings that it reaches into walls and colliders, 0 to 1
+  std::optional<double> drop_life{};  ///< s until a small drop that rests on something is gone; absent: it stays
   bool operator==(const Surface&) const = default;
 };
 

@@ -19,6 +19,10 @@ class Grown final : public Region {
  public:
   Grown(Made of, double by) : of_(std::move(of)), by_(by) {}
   double distance(const Vec3d& p) const override { return of_->distance(p) - by_; }
+  void distances(const PointColumns& points, double* to) const override {
+    of_->distances(points, to);
+    for (std::size_t i = 0; i < points.count; ++i) to[i] -= by_;
+  }
   Vec3d normal(const Vec3d& p) const override { return of_->normal(p); }
   Box3d bounds() const override {
     Box3d box = of_->bounds();
@@ -37,6 +41,7 @@ class Container final : public Region {
  public:
   Container(Made solid, PlacedHollow hollow) : solid_(std::move(solid)), hollow_(std::move(hollow)) {}
   double distance(const Vec3d& p) const override { return solid_->distance(p); }
+  void distances(const PointColumns& points, double* to) const override { solid_->distances(points, to); }
   Vec3d normal(const Vec3d& p) const override { return solid_->normal(p); }
   Box3d bounds() const override { return solid_->bounds(); }
   const PlacedHollow& hollow() const { return hollow_; }

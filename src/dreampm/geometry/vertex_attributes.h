@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dreampm/math/vec.h"
+
 namespace dreampm {
 
 enum class AttributeKind {
@@ -23,6 +25,14 @@ struct VertexAttribute {
 };
 
 using VertexAttributes = std::vector<VertexAttribute>;
+
+/// Values of vectors, one vector after the other, as an attribute keeps them.
+inline std::vector<float> flat(const std::vector<Vec3f>& vectors) {
+  std::vector<float> values;
+  values.reserve(3 * vectors.size());
+  for (const Vec3f& v : vectors) values.insert(values.end(), {v.x, v.y, v.z});
+  return values;
+}
 
 /// Null if there is none of that name.
 inline const VertexAttribute* find_attribute(const VertexAttributes& all, const std::string& name) {

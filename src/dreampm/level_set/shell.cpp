@@ -39,6 +39,10 @@ class Shell final : public Region {
  public:
   Shell(std::shared_ptr<const Region> of, double half) : of_(std::move(of)), half_(half) {}
   double distance(const Vec3d& p) const override { return std::abs(of_->distance(p)) - half_; }
+  void distances(const PointColumns& points, double* to) const override {
+    of_->distances(points, to);
+    for (std::size_t i = 0; i < points.count; ++i) to[i] = std::abs(to[i]) - half_;
+  }
   Vec3d normal(const Vec3d& p) const override {
     const Vec3d n = of_->normal(p);
     return of_->distance(p) < 0 ? -n : n;

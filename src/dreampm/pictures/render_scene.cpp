@@ -7,7 +7,6 @@
 #include "dreampm/math/srgb.h"
 #include "dreampm/render/texture_frame.h"
 #include "dreampm/setup/collider_mesh.h"
-#include "dreampm/setup/colliders.h"
 #include "dreampm/surface/carry.h"
 
 namespace dreampm {
@@ -125,8 +124,8 @@ ColliderModels::ColliderModels(const model::Scene& scene, const Vec3d& shift) : 
     std::optional<Vec3f> grain;
     if (look.grain) grain = static_cast<Vec3f>(*look.grain);
     const TextureFrame frame = texture_frame(mesh, grain);
-    models_.push_back({c.name, std::move(mesh), look, frame, cut_of(scene, c.name, shift),
-                       motion_path(c.motion, c.shape, scene.space.spacing, files), mesh_sequence(c, scene.space)});
+    models_.push_back(
+        {ColliderInTime(c, scene.space, files), std::move(mesh), look, frame, cut_of(scene, c.name, shift)});
     if (!ends_at_the_panes(c, look, room)) continue;
     models_.back().within = Box3d{room.min - shift, room.max - shift};
   }
@@ -140,7 +139,7 @@ std::optional<CutPlane> cut_of(const model::Scene& scene, const std::string& nam
 
 TriMesh ColliderModels::mesh(std::size_t collider, double time) const {
   const Model& m = models_[collider];
-  return m.sequence ? m.sequence->mesh(time, shift_) : m.mesh;
+  return m.in_time.sequence() ? m.in_time.sequence()->mesh(time, shift_) : m.mesh;
 }
 
 TriMesh ColliderModels::mesh_within(std::size_t collider, const Pose& pose) const {
@@ -155,10 +154,7 @@ TriMesh ColliderModels::mesh_within(std::size_t collider, const Pose& pose) cons
 
 std::vector<Pose> ColliderModels::poses_in(const FrameRecord& frame) const {
   std::vector<Pose> poses;
-  for (const Model& m : models_) {
-    const auto found = frame.poses.find(m.name);
-    poses.push_back(found != frame.poses.end() ? found->second : m.path ? m.path->pose_at(frame.time) : Pose{});
-  }
+  for (const Model& m : models_) poses.push_back(m.in_time.pose_in(frame));
   return poses;
 }
 
@@ -184,13 +180,14 @@ ColliderMotion ColliderModels::motion_about(const FrameRecord& frame, const Fram
   const std::vector<Pose> now = poses_in(frame);
   const auto pose_at = [&](std::size_t c, double t) {
     const Model& m = models_[c];
-    if (!frame.poses.contains(m.name)) return m.path ? m.path->pose_at(t) : Pose{};
-    const auto has = [&](const FrameRecord* f) { return f != nullptr && f->poses.contains(m.name); };
+    const std::string& name = m.in_time.name();
+    if (!frame.poses.contains(name)) return m.in_time.pose_at(t);
+    const auto has = [&](const FrameRecord* f) { return f != nullptr && f->poses.contains(name); };
     const bool forward = has(after) && (t >= frame.time || !has(before));
     const FrameRecord* other = forward ? after : before;
     if (!has(other) || other->time == frame.time) return now[c];
     const Vec3d middle = static_cast<Vec3d>(m.frame.middle) + shift_;
-    return between(now[c], other->poses.at(m.name), middle, (t - frame.time) / (other->time - frame.time));
+    return between(now[c], other->poses.at(name), middle, (t - frame.time) / (other->time - frame.time));
   };
   constexpr double step_turn = 0.1;  // rad: what turns is drawn along chords
   double most = 0;

@@ -9,11 +9,10 @@
 
 #include "dreampm/io/ply.h"
 #include "dreampm/io/run_record.h"
-#include "dreampm/level_set/mesh_sequence.h"
-#include "dreampm/math/motion_path.h"
 #include "dreampm/math/pigments.h"
 #include "dreampm/render/cut.h"
 #include "dreampm/render/from_scene.h"
+#include "dreampm/setup/in_time.h"
 
 namespace dreampm {
 
@@ -79,16 +78,16 @@ class ColliderModels {
  public:
   ColliderModels(const model::Scene& scene, const Vec3d& shift);
   std::size_t size() const { return models_.size(); }
-  const std::string& name(std::size_t collider) const { return models_[collider].name; }
+  const std::string& name(std::size_t collider) const { return models_[collider].in_time.name(); }
   const model::Look& look(std::size_t collider) const { return models_[collider].look; }
   /// Whether its mesh is another at other times.
-  bool deforms(std::size_t collider) const { return models_[collider].sequence != nullptr; }
+  bool deforms(std::size_t collider) const { return models_[collider].in_time.sequence() != nullptr; }
   /// Its mesh, uncut, as the scene gives it; at a time [s] if it deforms. Empty of a pin.
   TriMesh mesh(std::size_t collider, double time = 0) const;
   /// The same, without what lies beyond the box where it stands, if pictures do not show that: a
   /// wall that a hand dragged ends at the box.
   TriMesh mesh_within(std::size_t collider, const Pose& pose) const;
-  /// Where they stand in a frame: rigid bodies as the run says, others as the scene does.
+  /// Where they stand in a frame.
   std::vector<Pose> poses_in(const FrameRecord& frame) const;
   /// The same through an exposure of `open` seconds about the frame. Between frames rigid bodies
   /// turn and go on evenly. `before`, `after`: the frames next to it, or null.
@@ -100,14 +99,12 @@ class ColliderModels {
 
  private:
   struct Model {
-    std::string name;
-    TriMesh mesh;
+    ColliderInTime in_time;
+    TriMesh mesh;  ///< of one that does not deform
     model::Look look;
     TextureFrame frame;  ///< at rest
     std::optional<CutPlane> cut;
-    std::shared_ptr<const MotionPath> path;
-    std::shared_ptr<const MeshSequence> sequence;  ///< in place of the mesh
-    std::optional<Box3d> within{};                 ///< m, from the shift: what is beyond is not drawn
+    std::optional<Box3d> within{};  ///< m, from the shift: what is beyond is not drawn
   };
   Vec3f placed(const Pose& pose, const Vec3f& p) const {
     return static_cast<Vec3f>(pose(static_cast<Vec3d>(p) + shift_) - shift_);

@@ -34,13 +34,6 @@ struct Wrapped {
   }
 };
 
-std::vector<float> flat(const std::vector<Vec3f>& vectors) {
-  std::vector<float> values;
-  values.reserve(3 * vectors.size());
-  for (const Vec3f& v : vectors) values.insert(values.end(), {v.x, v.y, v.z});
-  return values;
-}
-
 std::vector<float> colors_of(const Wrapped& w) {
   if (!many_colored(w.scene, w.material))
     return flat(std::vector<Vec3f>(w.mesh.vertices.size(), matter_color(w.scene, w.material)));

@@ -1,27 +1,16 @@
 #include "dreampm/pictures/wetted_solids.h"
 
-#include "dreampm/setup/colliders.h"
-
 namespace dreampm {
 
 WettedSolids::WettedSolids(const model::Scene& scene) {
   const Meshes files(Meshes::Say::keep);
-  for (const model::Collider& c : scene.colliders) {
-    if (c.pin || c.holds) continue;
-    auto sequence = mesh_sequence(c, scene.space);
-    solids_.push_back({c.name, sequence ? nullptr : collider_region(c, scene.space, files),
-                       motion_path(c.motion, c.shape, scene.space.spacing, files), std::move(sequence)});
-  }
+  for (const model::Collider& c : scene.colliders)
+    if (!c.pin && !c.holds) solids_.emplace_back(c, scene.space, files);
 }
 
 std::vector<WettedSolid> WettedSolids::in(const FrameRecord& frame) const {
   std::vector<WettedSolid> solids;
-  for (const Solid& s : solids_) {
-    const auto found = frame.poses.find(s.name);
-    solids.push_back({s.sequence ? s.sequence->at(frame.time) : s.region, found != frame.poses.end() ? found->second
-                                                                          : s.path ? s.path->pose_at(frame.time)
-                                                                                   : Pose{}});
-  }
+  for (const SolidInTime& s : solids_) solids.push_back({s.region_at(frame.time), s.pose_in(frame)});
   return solids;
 }
 

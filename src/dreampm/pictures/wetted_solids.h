@@ -1,13 +1,9 @@
 // Colliders and rigid bodies of a scene, as the surfaces of its matter meet them.
 #pragma once
-#include <memory>
-#include <string>
 #include <vector>
 
-#include "dreampm/io/run_record.h"
-#include "dreampm/level_set/mesh_sequence.h"
-#include "dreampm/math/motion_path.h"
 #include "dreampm/model/scene.h"
+#include "dreampm/setup/in_time.h"
 #include "dreampm/state/collider.h"
 #include "dreampm/surface/surface.h"
 
@@ -17,17 +13,11 @@ namespace dreampm {
 class WettedSolids {
  public:
   explicit WettedSolids(const model::Scene& scene);
-  /// Returns them as they stand in a frame: rigid bodies as the run says, others as the scene does.
+  /// Returns them as they stand in a frame.
   std::vector<WettedSolid> in(const FrameRecord& frame) const;
 
  private:
-  struct Solid {
-    std::string name;
-    std::shared_ptr<const Region> region;
-    std::shared_ptr<const MotionPath> path;
-    std::shared_ptr<const MeshSequence> sequence;  ///< in place of the region
-  };
-  std::vector<Solid> solids_;
+  std::vector<SolidInTime> solids_;
 };
 
 /// Returns those of a simulation as they stand.

@@ -12,7 +12,6 @@
 #include "dreampm/pipeline/foam_stage.h"
 #include "dreampm/scene/emit.h"
 #include "dreampm/scene/foam.h"
-#include "dreampm/setup/colliders.h"
 
 namespace dreampm {
 namespace fs = std::filesystem;
@@ -37,28 +36,17 @@ FoamingMatter foaming_matter(const RunFolder& run, int number, const std::vector
   return out;
 }
 
-struct FoamObstacles::Made {
-  std::string name;
-  Collider collider;
-};
-
 FoamObstacles::FoamObstacles(const model::Scene& scene, const Vec3d& shift) : shift_(shift) {
   const Meshes meshes(Meshes::Say::keep);
   for (const model::Collider& c : scene.colliders)
-    if (!c.pin) made_.push_back(std::make_shared<const Made>(Made{c.name, make_collider(c, scene, 0, meshes)}));
+    if (!c.pin) solids_.emplace_back(c, scene.space, meshes);
 }
 
 std::vector<foam::Obstacle> FoamObstacles::at(const FrameRecord& frame, const FrameRecord& before) const {
   std::vector<foam::Obstacle> all;
-  for (const auto& m : made_) {
-    const Collider& c = m->collider;
-    const auto pose = [&](const FrameRecord& f) {
-      const auto found = f.poses.find(m->name);
-      return found != f.poses.end() ? found->second : c.path ? c.path->pose_at(f.time) : Pose{};
-    };
-    foam::Obstacle o;
-    o.shape = c.changing ? c.changing->at(frame.time) : c.shape;
-    o.pose = pose(frame), o.before = pose(before), o.shift = shift_;
+  for (const SolidInTime& s : solids_) {
+    foam::Obstacle o{.shape = s.region_at(frame.time), .pose = s.pose_in(frame), .before = s.pose_in(before)};
+    o.shift = shift_;
     if (!(o.pose == o.before)) o.dt = frame.time - before.time;
     o.bounds = o.shape->bounds();
     all.push_back(std::move(o));

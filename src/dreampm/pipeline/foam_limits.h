@@ -3,6 +3,7 @@
 #include "dreampm/foam/from_scene.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/pipeline/run_folder.h"
+#include "dreampm/setup/in_time.h"
 
 namespace dreampm {
 
@@ -26,8 +27,7 @@ class FoamObstacles {
   std::vector<foam::Obstacle> at(const FrameRecord& frame, const FrameRecord& before) const;
 
  private:
-  struct Made;
-  std::vector<std::shared_ptr<const Made>> made_;
+  std::vector<SolidInTime> solids_;
   Vec3d shift_;
 };
 

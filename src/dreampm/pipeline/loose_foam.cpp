@@ -13,6 +13,7 @@
 #include "dreampm/pictures/frames.h"
 #include "dreampm/pipeline/foam_files.h"
 #include "dreampm/pipeline/foam_limits.h"
+#include "dreampm/pipeline/loose_clouds.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
 
@@ -30,7 +31,7 @@ struct Film {
   bool ids = true;  ///< true if every file has ids
 };
 
-MovingCloud read_cloud(const std::string& file) {
+MovingCloud read_foaming_cloud(const std::string& file) {
   MovingCloud cloud = read_moving_cloud(file);
   const Vec3d shift = read_ply_shift(file);
   for (Vec3d& p : cloud.points) p += shift;
@@ -48,7 +49,8 @@ Film look_at_film(const LooseFoam& request) {
   for (std::size_t i = 0; i < request.files.size(); ++i) {
     check_interrupt(request.files[i]);
     progress.update(i);
-    const MovingCloud cloud = read_cloud(request.files[i]);
+    const MovingCloud cloud = read_foaming_cloud(request.files[i]);
+    check_extent(cloud.points, *request.spacing, request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
     for (const Vec3d& p : cloud.points) film.bounds.add(p);
@@ -65,7 +67,7 @@ Film look_at_film(const LooseFoam& request) {
 }
 
 FoamingMatter matter_of(const std::string& file, const Film& film, const Vec3d& shift) {
-  const MovingCloud cloud = read_cloud(file);
+  const MovingCloud cloud = read_foaming_cloud(file);
   FoamingMatter out;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     out.position.push_back(static_cast<Vec3f>(cloud.points[i] - shift));
@@ -112,8 +114,8 @@ FoamFound limits_of(const LooseFoam& request, const Film& film, const FoamRules&
 
 std::vector<fs::path> foam_of_files(const LooseFoam& request) {
   const std::vector<fs::path> names = loose_names(request.files, request.out, ".ply");
-  if (!request.spacing || !(*request.spacing > 0) || !std::isfinite(*request.spacing))
-    fail_input("files need --spacing, the distance between particles in meters, above 0");
+  if (!request.spacing || !(*request.spacing > 0))
+    check_spacing(request.spacing, read_foaming_cloud(request.files[0]).points, request.files[0]);
   if (!(request.fps > 0) || !std::isfinite(request.fps)) fail_input("--fps is {}: must be above 0", request.fps);
   const Film film = look_at_film(request);
   const Vec3d shift = file_shift(film.bounds.min, film.bounds.max, *request.spacing);

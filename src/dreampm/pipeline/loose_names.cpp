@@ -10,6 +10,7 @@ namespace fs = std::filesystem;
 
 std::vector<fs::path> loose_names(const std::vector<std::string>& files, const fs::path& out,
                                   const std::string& extension) {
+  if (fs::exists(out) && !fs::is_directory(out)) fail_input("{}: is a file; --out names a folder", out.string());
   std::map<std::string, std::string> by_stem;
   std::vector<fs::path> names;
   for (const std::string& file : files) {

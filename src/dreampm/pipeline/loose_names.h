@@ -7,7 +7,7 @@
 namespace dreampm {
 
 /// OUT/NAME.EXTENSION for each file. Writes nothing, nor makes the folder. Throws InputError for
-/// two files of one name, and where a file would be written over.
+/// two files of one name, where a file would be written over, and for a file as OUT.
 std::vector<std::filesystem::path> loose_names(const std::vector<std::string>& files, const std::filesystem::path& out,
                                                const std::string& extension);
 

@@ -13,6 +13,7 @@
 #include "dreampm/io/ply.h"
 #include "dreampm/math/srgb.h"
 #include "dreampm/pictures/frames.h"
+#include "dreampm/pipeline/loose_clouds.h"
 #include "dreampm/pipeline/loose_files.h"
 #include "dreampm/pipeline/loose_names.h"
 #include "dreampm/surface/carry.h"
@@ -48,21 +49,20 @@ bool wants(const LooseSurfaces& request, std::string_view name) {
   return std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-void check_attributes(const MovingCloud& cloud, const LooseSurfaces& request, const std::string& file) {
-  for (const std::string& name : request.attributes) {
-    const auto known = std::find_if(known_attributes.begin(), known_attributes.end(),
-                                    [&](const CloudAttribute& a) { return name == a.name; });
-    if (known == known_attributes.end())
-      fail_input("no attribute {}: of files there are {}", name, fmt::join(cloud_attributes(), ", "));
-    if (!known->there(cloud)) fail_input("{}: has no {}, of which attribute {} is made", file, known->made_of, name);
+/// Before any file is read.
+void check_attributes(const LooseSurfaces& request) {
+  const std::vector<std::string> known = cloud_attributes();
+  for (auto name = request.attributes.begin(); name != request.attributes.end(); ++name) {
+    if (std::find(known.begin(), known.end(), *name) == known.end())
+      fail_input("no attribute {}: of files there are {}", *name, fmt::join(known, ", "));
+    if (std::find(request.attributes.begin(), name, *name) != name) fail_input("--attributes has {} twice", *name);
   }
 }
 
-std::vector<float> flat(const std::vector<Vec3f>& vectors) {
-  std::vector<float> values;
-  values.reserve(3 * vectors.size());
-  for (const Vec3f& v : vectors) values.insert(values.end(), {v.x, v.y, v.z});
-  return values;
+void check_made_of(const MovingCloud& cloud, const LooseSurfaces& request, const std::string& file) {
+  for (const CloudAttribute& a : known_attributes)
+    if (wants(request, a.name) && !a.there(cloud))
+      fail_input("{}: has no {}, of which attribute {} is made", file, a.made_of, a.name);
 }
 
 VertexAttributes attributes_of(const TriMesh& mesh, const MovingCloud& cloud, const SurfaceInput& input,
@@ -106,14 +106,6 @@ void wrap(const MovingCloud& cloud, const LooseSurfaces& request, const fs::path
   write_mesh(target, result.mesh, shift, "in the unit and the axes of its particles", attributes);
 }
 
-void check_spacing(const LooseSurfaces& request) {
-  if (request.spacing && *request.spacing > 0 && std::isfinite(*request.spacing)) return;
-  if (request.spacing) fail_input("--spacing is {}: must be above 0", *request.spacing);
-  const std::optional<double> own = look_at_cloud(read_cloud(request.files[0]).points).spacing;
-  fail_input("files need --spacing, the distance between particles{}",
-             own ? fmt::format("; those of {} lie about {:.3g} apart", request.files[0], *own) : "");
-}
-
 }  // namespace
 
 std::vector<std::string> cloud_attributes() {
@@ -128,15 +120,18 @@ std::vector<fs::path> surface_files(const LooseSurfaces& request) {
     fail_input("--attributes are of the vertices of meshes; --type {} has none",
                request.type == model::SurfaceType::fog ? "fog" : "sdf");
   const std::vector<fs::path> names = loose_names(request.files, request.out, volume ? ".vdb" : ".ply");
-  check_spacing(request);
+  check_attributes(request);
+  if (!request.spacing || !(*request.spacing > 0))
+    check_spacing(request.spacing, read_cloud(request.files[0]).points, request.files[0]);
   Progress progress("surface: file", names.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (interrupted()) throw Interrupted(fmt::format("surface: interrupted before {}", request.files[i]));
     progress.update(i);
     const MovingCloud cloud = read_cloud(request.files[i]);
+    check_extent(cloud.points, *request.spacing, request.files[i]);
     if (i == 0)
       for (const std::string& w : cloud_warnings(cloud.points, *request.spacing, request.files[i])) warn("{}", w);
-    check_attributes(cloud, request, request.files[i]);
+    check_made_of(cloud, request, request.files[i]);
     make_folder(request.out);
     wrap(cloud, request, names[i]);
   }

@@ -10,6 +10,7 @@
 #include "dreampm/pictures/surface_attributes.h"
 #include "dreampm/pictures/wetted_solids.h"
 #include "dreampm/scene/emit.h"
+#include "dreampm/surface/resting_drops.h"
 #include "dreampm/surface/vdb.h"
 #include "dreampm/surface/volume_taken.h"
 
@@ -70,11 +71,46 @@ void keep_volumes(RunFolder& run, const std::vector<int>& frames, const std::vec
   });
 }
 
-void make_surface(RunFolder& run, const ParticleFrame& frame, const std::vector<WettedSolid>& solids, int material,
-                  int number) {
+/// The drops of each material that dry up, in a scene that asks for it.
+class DryingDrops {
+ public:
+  explicit DryingDrops(const RunFolder& run) : run_(run) {}
+  /// One share a particle of the material, or none.
+  std::vector<float> remaining(int material, int number, const ParticleFrame& frame) {
+    const auto& surface = run_.scene.surface;
+    if (!surface.drop_life) return {};
+    const auto drops = of_material_.try_emplace(material, static_cast<float>(run_.scene.space.spacing),
+                                                *surface.drop_life, run_.record.frames.front().frame,
+                                                [this, material](int f) { return liquid(material, f); });
+    number_ = number, frame_ = &frame;
+    return drops.first->second.remaining(number);
+  }
+
+ private:
+  surface::LiquidFrame liquid(int material, int number) const {
+    const ParticleFrame read = number == number_ ? ParticleFrame{} : read_particles(run_.particles(number));
+    const ParticleFrame& frame = number == number_ ? *frame_ : read;
+    const std::string& name = run_.scene.materials[static_cast<std::size_t>(material)].name;
+    surface::LiquidFrame out{run_.frame_record(number).time, {}, {}};
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+      if (frame.material_names.at(frame.material[i]) != name) continue;
+      out.ids.push_back(frame.id[i]), out.positions.push_back(frame.position[i]);
+    }
+    return out;
+  }
+
+  const RunFolder& run_;
+  std::map<int, surface::RestingDrops> of_material_;
+  int number_ = 0;  ///< of the frame that is at hand
+  const ParticleFrame* frame_ = nullptr;
+};
+
+void make_surface(RunFolder& run, const ParticleFrame& frame, const std::vector<WettedSolid>& solids,
+                  const std::vector<float>& remaining, int material, int number) {
   const model::Scene& scene = run.scene;
   const MaterialParticles particles = particles_of(scene, material, frame);
-  const SurfaceInput input = surface_input(scene, particles, frame.shift, solids);
+  SurfaceInput input = surface_input(scene, particles, frame.shift, solids);
+  input.remaining = remaining;
   const SurfaceSettings settings = surface_settings(scene);
   SurfaceResult result = reconstruct(input, settings);
   const VertexAttributes attributes =
@@ -169,12 +205,13 @@ StageResult surface_stage(RunFolder& run, const FrameRange& frames) {
     }
     return files;
   };
+  DryingDrops drying(run);
   std::optional<WettedSolids> solids;  // read when the first frame asks for them
   work.make = [&](int f) {
     const ParticleFrame frame = read_particles(run.particles(f));
     if (!solids) solids.emplace(run.scene);
     const std::vector<WettedSolid> standing = solids->in(run.frame_record(f));
-    for (const int m : materials) make_surface(run, frame, standing, m, f);
+    for (const int m : materials) make_surface(run, frame, standing, drying.remaining(m, f, frame), m, f);
   };
   work.leftovers = [&](int f) { return possible_files(run, f); };
   if (work.all_frames) keep_volumes(run, work.frames, materials);

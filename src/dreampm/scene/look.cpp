@@ -234,6 +234,10 @@ const Schema<Surface>& surface_schema() {
       count("smooth", &Surface::smooth, 0, 10).says("Rounds of smoothing."),
       number("overlap", &Surface::overlap, between(0, 1, "spacings"))
           .says("How far it reaches into walls and colliders that it touches, so that no film of air is left."),
+      number("drop_life", &Surface::drop_life, above_zero("s"))
+          .says(
+              "How long a drop of up to 8 particles lasts that rests on a wall or a collider, apart from other liquid: "
+              "it shrinks to nothing by then, as if it dried up. Absent: it stays."),
       words("attributes", &Surface::attributes, model::surface_attributes)
           .says("What the vertices of surfaces hold beside places and normals."),
       choice("type", &Surface::type, {"mesh", "fog", "sdf"})

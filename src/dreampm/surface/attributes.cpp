@@ -1,10 +1,13 @@
 #include "dreampm/surface/attributes.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <optional>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/linear_fit.h"
+#include "dreampm/surface/neighbors.h"
 
 namespace dreampm::surface {
 namespace {
@@ -27,6 +30,48 @@ bool in_wall(const QuadMesh& quads, const std::array<std::uint32_t, 4>& q) {
   return (quads.touches[q[0]] & quads.touches[q[1]] & quads.touches[q[2]] & quads.touches[q[3]] & ~QuadMesh::kFree) !=
          0;
 }
+
+/// Particles in the order of a grid's cells; their mirror images are far away.
+class Movers {
+ public:
+  Movers(std::span<const Vec3f> positions, std::span<const Vec3f> velocities, const CellGrid& grid)
+      : places_(grid, [&](std::uint32_t i) -> const Vec3f& { return i < velocities.size() ? positions[i] : kNowhere; }),
+        lanes_(grid.order.size()) {
+    for (std::vector<float>* column : {&places_.x, &places_.y, &places_.z}) column->resize(lanes_.size() + kLanes);
+    parallel_for(lanes_.size(), 8192, [&](std::size_t k) {
+      const std::size_t p = grid.order[k];
+      if (p >= velocities.size()) return;
+      const Vec3f &x = positions[p], &v = velocities[p];
+      lanes_[k] = {1, x.x, x.y, x.z, v.x, v.y, v.z, 0};
+    });
+  }
+  /// Adds those from `begin` to `end` to a fit around x.
+  DM_WIDE void add(std::size_t begin, std::size_t end, const Vec3f& x, float radius, LinearFit& fit) const {
+    LinearFit sum = fit;
+    const Wide from = {0, x.x, x.y, x.z, 0, 0, 0, 0};
+    const float radius2 = radius * radius;
+    for (std::size_t k = begin; k < end; k += kLanes) {
+      Wide dx, dy, dz;
+      load(&places_.x[k], dx), load(&places_.y[k], dy), load(&places_.z[k], dz);
+      dx -= x.x, dy -= x.y, dz -= x.z;
+      const Wide t = 1 - (dx * dx + dy * dy + dz * dz) / radius2;
+      unsigned bits = lane_bits(t > 0);
+      if (end - k < kLanes) bits &= (1u << (end - k)) - 1;
+      for (; bits != 0; bits &= bits - 1) {
+        const auto lane = static_cast<unsigned>(std::countr_zero(bits));
+        Wide p;
+        load(lanes_[k + lane].data(), p);
+        sum.add_lanes(p - from, t[lane]);
+      }
+    }
+    fit = sum;
+  }
+
+ private:
+  static constexpr Vec3f kNowhere{1e15f, 1e15f, 1e15f};  // its square is still a finite float
+  SortedPlaces places_;
+  std::vector<std::array<float, kLanes>> lanes_;  ///< 1, position, velocity, 0
+};
 
 }  // namespace
 
@@ -60,14 +105,11 @@ void carry_velocities(TriMesh& mesh, std::span<const Vec3f> positions, std::span
                       const CellGrid& grid) {
   mesh.velocities.assign(mesh.vertices.size(), Vec3f{});
   const float radius = 1.5f * grid.size;
+  const Movers movers(positions, velocities, grid);
   parallel_for(mesh.vertices.size(), 512, [&](std::size_t v) {
-    const Vec3f x = mesh.vertices[v], reach{radius, radius, radius};
     LinearFit fit(radius);
-    for_cells(grid, x - reach, x + reach, [&](std::size_t cell) {
-      for (std::uint32_t i = grid.first[cell]; i < grid.first[cell + 1]; ++i) {
-        const std::size_t p = grid.order[i];
-        if (p < velocities.size()) fit.add(positions[p] - x, velocities[p]);  // else a mirror image
-      }
+    for_rows_of_ball(grid, mesh.vertices[v], radius, [&](std::size_t first, std::size_t end) {
+      movers.add(grid.first[first], grid.first[end], mesh.vertices[v], radius, fit);
     });
     if (!fit.empty()) mesh.velocities[v] = fit.velocity();
   });

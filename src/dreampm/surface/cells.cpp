@@ -30,6 +30,12 @@ CellGrid::CellGrid(std::span<const Vec3f> points, float cell_size) : size(cell_s
     cells[r] = LatticeMap::place(keys[by_place[r]]);
     index.insert(cells[r], static_cast<std::int32_t>(r));
   }
+  for (std::size_t r = 0; r < cells.size(); ++r) {
+    if (r > 0 && cells[r].y == cells[r - 1].y && cells[r].z == cells[r - 1].z) continue;
+    rows.insert({0, cells[r].y, cells[r].z}, static_cast<std::int32_t>(row_first.size()));
+    row_first.push_back(static_cast<std::uint32_t>(r));
+  }
+  row_first.push_back(static_cast<std::uint32_t>(cells.size()));
   first.assign(keys.size() + 1, 0);
   for (std::size_t i = 0; i < n; ++i) ++first[rank[static_cast<std::size_t>(cell[i])] + 1];
   std::partial_sum(first.begin(), first.end(), first.begin());

@@ -8,6 +8,7 @@
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/dual_table.h"
 #include "dreampm/surface/lattice.h"
+#include "dreampm/surface/leaf_values.h"
 
 namespace dreampm::surface {
 namespace {
@@ -20,7 +21,6 @@ constexpr std::size_t cell_in_leaf(const Vec3i& p) { return static_cast<std::siz
 constexpr std::size_t in_block(const Vec3i& p) { return static_cast<std::size_t>((p.z * kBlock + p.y) * kBlock + p.x); }
 constexpr Vec3i corner_offset(int c) { return {c & 1, c >> 1 & 1, c >> 2 & 1}; }
 constexpr Vec3i unit(int axis) { return {axis == 0, axis == 1, axis == 2}; }
-Vec3i leaf_of(const Vec3i& p) { return {p.x >> 3, p.y >> 3, p.z >> 3}; }
 Vec3i local(const Vec3i& p) { return {p.x & 7, p.y & 7, p.z & 7}; }
 static_assert(kW == 8, "leaf_of and local shift by 3 bits");
 

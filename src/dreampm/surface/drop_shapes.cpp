@@ -139,10 +139,13 @@ class Adding {
     const bool coarse = drop.particles < 3;
     const float size = spacing_ * std::cbrt(static_cast<float>(drop.particles));
     const float radius = size * length(spheres_[0].vertices[0]);
-    if (const Ground ground = ground_of(bounds_, drop.center, radius); ground.distance < radius)
-      add_cap(coarse ? caps_[0] : caps_[1], size, ground, drop.velocity);
-    else
+    if (const Ground ground = ground_of(bounds_, drop.center, radius); ground.distance < radius) {
+      constexpr float least = 1e-3f;  // of its volume: less is not seen
+      if (drop.remaining > least)
+        add_cap(coarse ? caps_[0] : caps_[1], size * std::cbrt(drop.remaining), ground, drop.velocity);
+    } else {
       add_sphere(coarse ? spheres_[0] : spheres_[1], size, radius, drop);
+    }
   }
 
  private:
@@ -168,8 +171,12 @@ class Adding {
       if (v < cap.rim) continue;
       if (ground.solid) x = bounds_.solids.projected(x, 0);
       if (v < cap.foot) continue;
-      const Vec3f out = ground.solid ? bounds_.solids.normal(x) : n;
-      x -= out * (ground.solid ? bounds_.solids.depth(x, out, depth_) : depth_);
+      if (ground.solid) {
+        const Solids::WayIn way = bounds_.solids.way_in(x, bounds_.solids.normal(x), depth_);
+        x -= way.out * way.depth;
+      } else {
+        x -= n * depth_;
+      }
     }
   }
   /// Makes room for a shape's vertices, and adds its triangles.

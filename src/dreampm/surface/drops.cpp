@@ -41,7 +41,8 @@ std::vector<Size> measure(const QuadMesh& mesh, const Bodies& bodies) {
 }  // namespace
 
 std::vector<SmallDrop> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
-                                        std::span<const Vec3f> velocities, float spacing) {
+                                        std::span<const Vec3f> velocities, std::span<const float> remaining,
+                                        float spacing) {
   constexpr std::uint32_t kAnyShape = 3, kMost = 8;
   constexpr double kCompact = 2;  // of the sphere's radius
   const std::vector<Size> sizes = measure(mesh, bodies);
@@ -55,18 +56,20 @@ std::vector<SmallDrop> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::spa
   std::vector<SmallDrop> alone;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3f velocity = velocities.empty() ? Vec3f{} : velocities[i];
+    const float left = remaining.empty() ? 1 : remaining[i];
     if (bodies.of_particle[i] == Bodies::kNone) {
-      alone.push_back({points[i], velocity, 1});
+      alone.push_back({points[i], velocity, 1, left});
       continue;
     }
     const auto b = static_cast<std::size_t>(bodies.of_particle[i]);
     if (!taken[b]) continue;
-    drops[b].center += points[i], drops[b].velocity += velocity, ++drops[b].particles;
+    if (drops[b].particles == 0) drops[b].remaining = 0;
+    drops[b].center += points[i], drops[b].velocity += velocity, drops[b].remaining += left, ++drops[b].particles;
   }
   for (SmallDrop& s : drops) {
     if (s.particles == 0) continue;
     const auto n = static_cast<float>(s.particles);
-    alone.push_back({s.center / n, s.velocity / n, s.particles});
+    alone.push_back({s.center / n, s.velocity / n, s.particles, s.remaining / n});
   }
 
   constexpr std::uint32_t kGone = 0xffffffffu;

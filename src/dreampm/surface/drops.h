@@ -29,12 +29,14 @@ struct SmallDrop {
   Vec3f center{};               ///< m
   Vec3f velocity{};             ///< m/s
   std::uint32_t particles = 0;  ///< its volume in spacing^3
+  float remaining = 1;          ///< the share of that which is left where it lies on something
 };
 
 /// Takes out of the mesh: bodies of at most 3 particles, compact bodies of at most 8, and bodies
 /// that hold no particle at all. Returns them, and one drop for each particle that no body holds.
-/// `velocities`: one a particle, or empty.
+/// `velocities`, `remaining`: one a particle, or empty.
 std::vector<SmallDrop> take_small_drops(QuadMesh& mesh, Bodies& bodies, std::span<const Vec3f> points,
-                                        std::span<const Vec3f> velocities, float spacing);
+                                        std::span<const Vec3f> velocities, std::span<const float> remaining,
+                                        float spacing);
 
 }  // namespace dreampm::surface

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/surface/wide.h"
@@ -89,11 +88,9 @@ Blob blob_of(const Kernel& k) {
   return {k, {std::sqrt(c(0, 0) * per), std::sqrt(c(1, 1) * per), std::sqrt(c(2, 2) * per)}};
 }
 
-/// Along the rows of a plane of a leaf q^2 = a + b i + c i^2: a, b and whether the row misses the
-/// ellipsoid, row by row.
+/// Along the rows of a plane of a leaf q^2 = a + b i + c i^2: a and b, row by row.
 struct Rows {
   float a[kW], b[kW];
-  std::int32_t miss[kW];
 };
 
 /// The rows of the plane `z` [m] off a kernel's center, whose first points lie at x and y [m] of
@@ -102,37 +99,35 @@ struct Rows {
                                              Rows& rows) {
   const Wide fx = form.xx * x + form.xy * y + form.xz * z, fy = form.xy * x + form.yy * y + form.yz * z,
              fz = form.xz * x + form.yz * y + form.zz * z;
-  const Wide a = x * fx + y * fy + z * fz, b = 2 * voxel * fx;
-  const auto miss = (a - 1) * 4 * (voxel * voxel * form.xx) >= b * b;
-  store(a, rows.a), store(b, rows.b);
-  static_assert(sizeof miss == sizeof rows.miss);
-  std::memcpy(rows.miss, &miss, sizeof miss);
+  store(x * fx + y * fy + z * fz, rows.a), store(2 * voxel * fx, rows.b);
 }
 
 /// Adds kernels to the 8^3 values of the leaf whose first point is `corner`.
-DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, float voxel, float* values) {
+DM_WIDE void add_blobs(const Blob* begin, const Blob* end, const Vec3f& corner, const FieldSettings& s, float* values) {
   static_assert(kW == kLanes);
   const Wide steps = {0, 1, 2, 3, 4, 5, 6, 7};
-  const float last = voxel * (kW - 1), per_voxel = 1 / voxel;
+  const float voxel = s.voxel, per_voxel = 1 / voxel, last = voxel * (kW - 1);
+  const float far2 = 1.0001f * s.support * s.support;
   for (const Blob* blob = begin; blob != end; ++blob) {
-    const Kernel& k = blob->kernel;
-    const Vec3f d = corner - k.center, &half = blob->half;
-    if (d.x > half.x || d.x + last < -half.x || d.y > half.y || d.y + last < -half.y || d.z > half.z ||
-        d.z + last < -half.z)
-      continue;
+    const Vec3f d = corner - blob->kernel.center, half = blob->half;
+    // From the center to the leaf along each axis.
+    const float ox = std::max(0.0f, std::max(d.x, -last - d.x)), oy = std::max(0.0f, std::max(d.y, -last - d.y)),
+                oz = std::max(0.0f, std::max(d.z, -last - d.z));
+    if (ox > half.x || oy > half.y || oz > half.z || ox * ox + oy * oy + oz * oz > far2) continue;
     const int y0 = std::max(0, static_cast<int>(std::ceil((-half.y - d.y) * per_voxel)));
     const int y1 = std::min(kW - 1, static_cast<int>(std::floor((half.y - d.y) * per_voxel)));
     const int z0 = std::max(0, static_cast<int>(std::ceil((-half.z - d.z) * per_voxel)));
     const int z1 = std::min(kW - 1, static_cast<int>(std::floor((half.z - d.z) * per_voxel)));
-    const Wide y_of = d.y + voxel * steps;
-    const float c = voxel * voxel * k.form.xx, amount = k.amount;
+    const Sym3<float> form = blob->kernel.form;  // a copy stays in registers while values are written
+    const Wide y_of = d.y + voxel * steps, c_steps = voxel * voxel * form.xx * steps,
+               amount = Wide{} + blob->kernel.amount;
     Rows rows;
     for (int z = z0; z <= z1; ++z) {
-      find_rows(k.form, d.x, y_of, d.z + voxel * static_cast<float>(z), voxel, rows);
+      find_rows(form, d.x, y_of, d.z + voxel * static_cast<float>(z), voxel, rows);
+      // Rows that miss the ellipsoid add 0: to find them costs more.
       for (int y = y0; y <= y1; ++y) {
-        if (rows.miss[y]) continue;
         float* row = values + (z * kW + y) * kW;
-        Wide sum, t = 1 - (rows.a[y] + steps * (rows.b[y] + c * steps));
+        Wide sum, t = 1 - (rows.a[y] + steps * (rows.b[y] + c_steps));
         t = t > 0 ? t : Wide{};
         load(row, sum);
         sum += amount * t * t * t;
@@ -161,7 +156,7 @@ SparseField make_field(const std::vector<Kernel>& kernels, const CellGrid& grid,
     const Vec3f margin{s.support, s.support, s.support}, edge{width, width, width};
     const Vec3i low = lattice_cell(corner - margin, grid.size), high = lattice_cell(corner + edge + margin, grid.size);
     for_rows(grid, low, high, [&](std::size_t cell, std::size_t end_cell) {
-      add_blobs(blobs.data() + grid.first[cell], blobs.data() + grid.first[end_cell], corner, s.voxel, values);
+      add_blobs(blobs.data() + grid.first[cell], blobs.data() + grid.first[end_cell], corner, s, values);
     });
     if (std::min(walls.distance(corner), walls.distance(corner + edge)) > 8 * s.spacing) return;
     for (int i = 0; i < SparseField::kPoints; ++i) {

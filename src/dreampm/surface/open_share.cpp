@@ -4,13 +4,41 @@
 #include <cmath>
 
 #include "dreampm/base/parallel.h"
+#include "dreampm/surface/leaf_values.h"
 
 namespace dreampm::surface {
 namespace {
 
-constexpr int kBrick = 8;
+/// Finds what is open of a brick of 8^3 cells. Most are wholly open or wholly taken, as one
+/// distance shows for each 2^3 of them: others are asked for one by one.
+class OpenCells {
+ public:
+  OpenCells(const Solids& solids, float spacing) : solids_(solids), spacing_(spacing) {}
+  void find(const Vec3i& brick, float* to) const {
+    const Vec3f first = Vec3f(brick * 8) * spacing_, half{0.5f * spacing_, 0.5f * spacing_, 0.5f * spacing_};
+    std::array<float, 64> middle;
+    solids_.distances(first + half, 2 * spacing_, blocks_, middle.data());
+    std::vector<Vec3i> unsure;
+    for (std::size_t b = 0; b < blocks_.size(); ++b)
+      for (const Vec3i& o : eight_) {
+        const Vec3i p = blocks_[b] * 2 + o;
+        if (std::abs(middle[b]) < kEnough * spacing_)
+          unsure.push_back(p);
+        else
+          to[place_in_leaf(p)] = middle[b] > 0 ? 1.0f : 0.0f;
+      }
+    std::vector<float> d(unsure.size());
+    solids_.distances(first, spacing_, unsure, d.data());
+    for (std::size_t i = 0; i < unsure.size(); ++i)
+      to[place_in_leaf(unsure[i])] = std::clamp(0.5f + d[i] / spacing_, 0.0f, 1.0f);
+  }
 
-Vec3i brick_of(const Vec3i& p) { return {p.x >> 3, p.y >> 3, p.z >> 3}; }
+ private:
+  static constexpr float kEnough = 1.5f;  // half a cell, and from the middle of 2^3 to the farthest
+  const Solids& solids_;
+  float spacing_;
+  std::vector<Vec3i> blocks_ = cube(4), eight_ = cube(2);
+};
 
 /// The bricks from one to another, both included, once each and in order.
 class BrickList {
@@ -51,16 +79,14 @@ OpenShare::OpenShare(const Solids& solids, const std::vector<Box3f>& boxes, floa
 
   BrickList wanted;
   for (const Box3f& b : boxes)
-    wanted.add(brick_of(lattice_cell(b.min, spacing)), brick_of(lattice_cell(b.max, spacing) + Vec3i{1, 1, 1}));
+    wanted.add(leaf_of(lattice_cell(b.min, spacing)), leaf_of(lattice_cell(b.max, spacing) + Vec3i{1, 1, 1}));
   const std::vector<Vec3i> bricks = wanted.take(index_);
   BrickList around;
   for (const Vec3i& b : bricks) around.add(b - Vec3i{1, 1, 1}, b + Vec3i{1, 1, 1});
   const std::vector<Vec3i> open = around.take(open_index_);
   open_.resize(open.size());
-  parallel_for(open.size(), 4, [&](std::size_t i) {
-    solids.distances(Vec3f(open[i] * kBrick) * spacing, spacing, kBrick, open_[i].data());
-    for (float& v : open_[i]) v = std::clamp(0.5f + v / spacing, 0.0f, 1.0f);
-  });
+  const OpenCells cells(solids, spacing);
+  parallel_for(open.size(), 4, [&](std::size_t i) { cells.find(open[i], open_[i].data()); });
   bricks_.resize(bricks.size());
   parallel_for(bricks.size(), 4, [&](std::size_t i) { average(bricks[i], bricks_[i]); });
   open_ = {};
@@ -69,18 +95,19 @@ OpenShare::OpenShare(const Solids& solids, const std::vector<Box3f>& boxes, floa
 void OpenShare::average(const Vec3i& brick, Brick& to) const {
   constexpr int wide = kW + 2 * kTaps;
   static_assert(kTaps <= kW);
-  const auto in_brick = [](const Vec3i& p) {
-    return static_cast<std::size_t>(((p.z & 7) * kW + (p.y & 7)) * kW + (p.x & 7));
-  };
   std::vector<float> a(wide * wide * wide), b(wide * wide * kW), c(wide * kW * kW);
   const Vec3i first = brick * kW - Vec3i{kTaps, kTaps, kTaps};
   std::size_t n = 0;
   for (int z = 0; z < wide; ++z)
-    for (int y = 0; y < wide; ++y)
+    for (int y = 0; y < wide; ++y) {
+      const float* row = nullptr;  // of a brick, from x = 0 in it
       for (int x = 0; x < wide; ++x) {
         const Vec3i p = first + Vec3i{x, y, z};
-        a[n++] = open_[static_cast<std::size_t>(open_index_.find(brick_of(p)))][in_brick(p)];
+        if (row == nullptr || (p.x & 7) == 0)
+          row = open_[static_cast<std::size_t>(open_index_.find(leaf_of(p)))].data() + place_in_leaf({0, p.y, p.z});
+        a[n++] = row[p.x & 7];
       }
+    }
   // One axis after the other; `stride` is that of the axis in `from`.
   const auto pass = [&](const float* from, std::size_t stride) {
     float sum = taps_[0] * from[kTaps * stride];
@@ -97,23 +124,11 @@ void OpenShare::average(const Vec3i& brick, Brick& to) const {
   for (std::size_t zyx = 0; zyx < kPoints; ++zyx) to[zyx] = pass(&c[zyx], kW * kW);
 }
 
-float OpenShare::value(const Vec3i& p) const {
-  const std::int32_t i = index_.find(brick_of(p));
-  if (i == LatticeMap::kAbsent) return 1;
-  return bricks_[static_cast<std::size_t>(i)][static_cast<std::size_t>(((p.z & 7) * kW + (p.y & 7)) * kW + (p.x & 7))];
-}
-
 float OpenShare::at(const Vec3f& p) const {
-  const Vec3f u = p / spacing_;
-  const Vec3i i = lattice_cell(u, 1);
-  const Vec3f f = u - Vec3f(i);
-  float sum = 0;
-  for (int c = 0; c < 8; ++c) {
-    const Vec3i o{c & 1, c >> 1 & 1, c >> 2 & 1};
-    const float w = (o.x ? f.x : 1 - f.x) * (o.y ? f.y : 1 - f.y) * (o.z ? f.z : 1 - f.z);
-    sum += w * value(i + o);
-  }
-  return sum;
+  return interpolated(p / spacing_, [&](const Vec3i& brick) -> LeafValues {
+    const std::int32_t i = index_.find(brick);
+    return {i == LatticeMap::kAbsent ? nullptr : bricks_[static_cast<std::size_t>(i)].data(), 1};
+  });
 }
 
 }  // namespace dreampm::surface

@@ -23,7 +23,6 @@ class OpenShare {
 
   /// Averages around the points of a brick, from what is open around it.
   void average(const Vec3i& brick, Brick& to) const;
-  float value(const Vec3i& point) const;
 
   float spacing_;
   std::array<float, kTaps + 1> taps_{};

@@ -48,11 +48,10 @@ class Extension {
   Vec3f into_solid(std::size_t v, const Vec3f& x, const Vec3f& normal, bool pure) const {
     const Solids& solids = bounds_.solids;
     if ((quads_.touches[v] & QuadMesh::kSolid) != 0) {
-      const Vec3f n = solids.normal(x);
-      const float depth = solids.depth(x, n, settings_.depth);
-      if (!pure) return inward(n, normal, depth);
-      const Vec3f in = n * -depth;
-      return depth < settings_.depth ? in : solids.projected(x + in, -depth) - x;  // deeper still at edges
+      const auto [out, depth, whole] = solids.way_in(x, solids.normal(x), settings_.depth);
+      if (!pure) return inward(out, normal, depth);
+      const Vec3f in = out * -depth;
+      return whole ? solids.projected(x + in, -settings_.depth) - x : in;
     }
     if (!solids.near({x, x})) return {};
     const float d = solids.distance(x);
@@ -60,7 +59,8 @@ class Extension {
     const Vec3f n = solids.normal(x);
     const float share = ramp(-dot(n, normal), 0.2f, 0.6f) * (1 - ramp(d / settings_.gap, 0.6f, 1));
     if (share <= 0) return {};
-    return n * (-share * (d + solids.depth(x - n * d, n, settings_.depth)));
+    const Solids::WayIn way = solids.way_in(x - n * d, n, settings_.depth);
+    return (n * d + way.out * way.depth) * -share;
   }
 
   const QuadMesh& quads_;

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "dreampm/geometry/region.h"
 #include "dreampm/surface/sparse_field.h"
 #include "dreampm/surface/surface.h"
 #include "dreampm/surface/walls.h"
@@ -24,25 +25,37 @@ class Solids {
   float distance(const Vec3f& p) const;
   /// The direction away from the nearest solid, of length 1; 0 where no distance changes.
   Vec3f normal(const Vec3f& p) const;
-  /// Distances at count^3 points of a lattice, x fastest.
-  void distances(const Vec3f& first, float step, int count, float* to) const;
+  /// Computes the distances at many points, to the same bits.
+  void distances(std::span<const Vec3f> points, float* to) const;
+  /// The same at points of a lattice, counted in steps [m] from `first`.
+  void distances(const Vec3f& first, float step, std::span<const Vec3i> points, float* to) const;
   /// False where all of a box is farther than `reach` from the bounds of every solid.
   bool near(const Box3f& box) const;
   /// True where no solid reaches into the box.
   bool clear_of(const Box3f& box) const;
   /// The point of the surface nearest to p, where p lies near it: at distance `off` [m] of it.
   Vec3f projected(Vec3f p, float off) const;
-  /// The depth [m] at the point p of the surface that a mesh may reach down to, going against the
-  /// normal n: `wanted`, less where the solid is thin.
-  float depth(const Vec3f& p, const Vec3f& n, float wanted) const;
+  /// The way by which a mesh reaches into the solid at a point of its surface.
+  struct WayIn {
+    Vec3f out;    ///< the way goes against that direction, of length 1
+    float depth;  ///< m
+    bool whole;   ///< true if it ends as deep as wanted
+  };
+  /// The way at the point p, of normal n: as far from the surface as `wanted` [m], against n or, at
+  /// convex edges, away from them; where the solid is thin a part of the way to its middle.
+  WayIn way_in(const Vec3f& p, const Vec3f& n, float wanted) const;
 
  private:
   struct Solid {
     WettedSolid of;
     Box3d bounds;  ///< m, as it stands
   };
-  /// The gradient of the distance.
-  Vec3f slope(const Vec3f& p) const;
+  /// The points that are asked for together, at most.
+  static constexpr std::size_t at_once = 64;
+  template <class Place>
+  void ask_at(std::size_t count, const Place& place, float* to) const;
+  /// `points`: in the axes of the solids.
+  void ask(const PointColumns& points, float* to) const;
   Box3d standing_bounds(const WettedSolid& solid) const;
 
   std::vector<Solid> solids_;

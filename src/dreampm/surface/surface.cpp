@@ -36,6 +36,9 @@ void check(const SurfaceInput& in, const SurfaceSettings& s, float voxel) {
   if (!in.velocities.empty() && in.velocities.size() != in.positions.size())
     fail_input("surface: {} velocities for {} positions: give one each, or none", in.velocities.size(),
                in.positions.size());
+  if (!in.remaining.empty() && in.remaining.size() != in.positions.size())
+    fail_input("surface: {} shares that remain for {} positions: give one each, or none", in.remaining.size(),
+               in.positions.size());
   for (int a = 0; a < 3; ++a) {
     const auto side = static_cast<std::size_t>(2 * a);
     if (in.is_wall[side] && in.is_wall[side + 1] && !(in.walls.max[a] > in.walls.min[a]))
@@ -127,7 +130,7 @@ SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& setting
   ended("contour");
   Bodies bodies = find_bodies(field, quads, std::span(points.points).first(points.real));
   const std::vector<SmallDrop> small =
-      take_small_drops(quads, bodies, std::span(points.points).first(points.real), in.velocities, h);
+      take_small_drops(quads, bodies, std::span(points.points).first(points.real), in.velocities, in.remaining, h);
   ended("bodies");
   smooth(quads, bearing(quads, bodies, kernels, centers), {kStepsPerSmooth * settings.smooth, 0.5f * h});
   ended("smooth");
@@ -140,7 +143,8 @@ SurfaceResult reconstruct(const SurfaceInput& in, const SurfaceSettings& setting
   if (!in.velocities.empty()) carry_velocities(result.mesh, points.points, in.velocities, cells);
   ended("velocities");
   result.volume = enclosed_volume(result.mesh);
-  for (const SmallDrop& s : small) result.volume += std::pow(static_cast<double>(h), 3) * s.particles;
+  for (const SmallDrop& s : small)
+    result.volume += std::pow(static_cast<double>(h), 3) * s.particles * static_cast<double>(s.remaining);
   extend(result.mesh, quads, bounds, {settings.overlap * h, contact_gap * h});
   add_small_drops(result.mesh, small, bounds, h, settings.overlap * h);
   result.small_drops = small.size();

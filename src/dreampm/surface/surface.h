@@ -28,11 +28,14 @@ struct WettedSolid {
 struct SurfaceInput {
   std::span<const Vec3f> positions{};   ///< m
   std::span<const Vec3f> velocities{};  ///< m/s, one a particle, or empty
-  float spacing = 0;                    ///< h, m
-  Box3f walls{};                        ///< m; only the sides marked in is_wall count
-  std::array<bool, 6> is_wall{};        ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
-  std::vector<WettedSolid> solids{};    ///< distances exact within `solid_reach` spacings
-  Vec3d origin{};                       ///< m, in the axes of the solids: where positions and walls count from
+  /// The share of its volume that each particle has left, 0 to 1, as small drops on walls and
+  /// solids show it (surface/resting_drops.h); empty: all.
+  std::span<const float> remaining{};
+  float spacing = 0;                  ///< h, m
+  Box3f walls{};                      ///< m; only the sides marked in is_wall count
+  std::array<bool, 6> is_wall{};      ///< x_min, x_max, y_min, y_max, z_min, z_max: a wall that the liquid wets
+  std::vector<WettedSolid> solids{};  ///< distances exact within `solid_reach` spacings
+  Vec3d origin{};                     ///< m, in the axes of the solids: where positions and walls count from
 };
 
 /// Liquid nearer than that to a solid, in spacings, is as it would be amid liquid.
