@@ -32,8 +32,9 @@ Film::Film(const RenderSettings& settings, const PixelBox& box, const View& view
       wanted_(width_ * height_, settings.min_samples) {}
 
 float Film::Pixel::error() const {
-  const float n = static_cast<float>(count), mean = shown / n;
-  return std::sqrt(std::max(0.0f, shown2 / n - mean * mean) / (n - 1));
+  const float n = static_cast<float>(count);
+  const Vec3f mean = shown / n, variance = max(Vec3f{}, shown2 / n - mean * mean);
+  return std::sqrt((variance.x + variance.y + variance.z) / (3 * (n - 1)));
 }
 
 void Film::expose(const std::function<void(double)>& progress) {
@@ -74,7 +75,7 @@ void Film::expose_pixel(std::size_t i, int x, int y) {
     Vec3f c = view_.integrator.radiance(ray.origin, ray.direction, random, time);
     if (!is_finite(c)) c = {};
     if (const float m = largest(c); clamp_ && m > brightest) c *= brightest / m;
-    const float shown = shown_lightness(c);
+    const Vec3f shown = as_shown(c);
     pixel.sum += c, pixel.shown += shown, pixel.shown2 += shown * shown;
     if (!asides_.empty()) {
       const FirstHit first = view_.firsts->at(ray.origin, ray.direction, time);

@@ -36,9 +36,10 @@ class Film {
   /// Samples of one pixel so far.
   struct Pixel {
     Vec3f sum;
-    float shown = 0, shown2 = 0;  ///< of the lightness as shown, and its square
+    Vec3f shown, shown2;  ///< sums of each channel as shown, and of its square
     int count = 0;
-    /// The standard error of the mean lightness.
+    /// The standard error of the mean, the root mean square over the channels: edges between
+    /// colors of one lightness count, too.
     float error() const;
   };
   struct Aside {

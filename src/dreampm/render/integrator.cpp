@@ -26,20 +26,38 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random, floa
   first.sun_disc = options_.sun_disc;
   first.polished = !options_.looks;
   Vec3f sum;
+  follow(stack, random, sum);
+  return sum;
+}
+
+void Integrator::follow(PathStack& stack, Sampler& random, Vec3f& sum) const {
   while (stack.size > 0) {
     Path r = stack.paths[--stack.size];
     while (step(r, random, sum, stack)) {
     }
   }
-  return sum;
+}
+
+Vec3f Integrator::arriving(const Vec3f& p, const Vec3f& n, Sampler& random, float time) const {
+  PathStack stack;
+  Path r;
+  r.media.time = time;
+  r.sun_disc = false;
+  const Shading white{p, n, n, Frame(n), {0, 0, 1}, {1, 1, 1}, matte_};
+  Vec3f sum = lit(r, white, random);
+  if (bounce(r, white, random, stack)) {
+    stack.paths[stack.size++] = r;
+    follow(stack, random, sum);
+  }
+  return sum * pi;
 }
 
 /// Radiance of what lies beyond all surfaces.
 Vec3f Integrator::beyond(const Path& r) const {
+  if (r.sky_counted && sky_.aimed_at() != nullptr) return {};
   const Vec3f sky = sky_.radiance(r.d, r.sun_disc);
-  const Environment* const aimed_at = sky_.aimed_at();
-  if (r.density == 0 || aimed_at == nullptr) return sky;
-  return sky * (r.density / (r.density + aimed_at->density(r.d)));
+  if (!r.gathered || options_.photons == nullptr || sky_.bright_parts() == nullptr) return sky;
+  return max(Vec3f{}, sky - sky_.bright_parts()->radiance(r.d));
 }
 
 /// To the next surface, or the next place in cloudy matter that scatters. False: the path ends.
@@ -91,6 +109,10 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, 
   const Vec3f far = sky_.radiance(normalized(Vec3f{r.d.x, 0, r.d.z}), false);
   const float footprint = r.distance * options_.pixel_angle / std::max(0.05f, -r.d.y);
   const Vec3f albedo = pattern_.albedo(p.x, p.z, footprint);
+  if (options_.floor_light == nullptr && options_.paper_light != nullptr) {
+    sum += r.weight * mix(albedo * options_.paper_light->irradiance(p, r.media.top() == air) * (1 / pi), far, fade);
+    return false;
+  }
   if (options_.floor_light == nullptr) {
     sum += r.weight * far * fade;
     r.weight *= 1 - fade;
@@ -120,6 +142,10 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, 
 bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
                             PathStack& stack) const {
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
+  if (options_.paper_light != nullptr && hit.object == options_.paper) {
+    sum += r.weight * studio_paper * options_.paper_light->irradiance(p, r.media.top() == air) * (1 / pi);
+    return false;
+  }
   const Frame frame(n);
   const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
   const Vec3f color =
@@ -141,7 +167,7 @@ bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, PathStack& 
     path.weight = path.weight * s.weight;
     path.d = leaving(at.frame.world(s.light.x, s.light.y, s.light.z), at.face);
     path.sun_disc = before.sun_disc && at.bsdf.mirror(lobe);
-    path.density = at.bsdf.pdf(lobe, at.view, s.light);
+    path.gathered = path.sky_counted = !at.bsdf.mirror(lobe);
     return largest(s.weight) > 0;
   };
   int lobe = 0;
@@ -214,7 +240,7 @@ bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   const float a = random.next(), b = random.next();
   r.d = cosine_direction(Frame(side), a, b);
   r.o = hit.center + side * (hit.grain + geometry_.epsilon());
-  r.sun_disc = false, r.polished = true, r.density = 0;
+  r.sun_disc = false, r.polished = true, r.gathered = r.sky_counted = false;
   return true;
 }
 
@@ -232,8 +258,8 @@ bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   Path reflected = r, passed = r;
   // Only glass of the basin lets light through straight, so that the sky lit the last surface
   // through it.
-  reflected.density = 0;
-  if (hit.kind == Kind::dielectric) passed.density = 0;
+  reflected.sky_counted = false;
+  if (hit.kind == Kind::dielectric) passed.sky_counted = false;
   reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected;
   passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.media = s.refracted_media;
   reflected.weight *= s.reflectance;

@@ -87,9 +87,9 @@ class PhotonMap {
   void at(const Vec3f& p, const Vec3f& n, Each&& each) const {
     if (photons_.empty()) return;
     const Cell middle = cell_of(p);
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j)
-        for (int k = -1; k <= 1; ++k) {
+    for (int j = -1; j <= 1; ++j)
+      for (int k = -1; k <= 1; ++k)
+        for (int i = -1; i <= 1; ++i) {
           const Cell cell{middle[0] + i, middle[1] + j, middle[2] + k};
           const std::size_t bucket = bucket_of(cell);
           for (std::uint32_t a = first_[bucket]; a < first_[bucket + 1]; ++a) {
@@ -117,7 +117,8 @@ class PhotonMap {
   }
   std::size_t bucket_of(const Cell& c) const {
     const auto bits = [](int i) { return static_cast<std::uint32_t>(i); };
-    return hash32(bits(c[0]) * 0x8da6b343u ^ bits(c[1]) * 0xd8163841u ^ bits(c[2]) * 0xcb1ab31fu) &
+    // Cells along x are neighbors in memory, too.
+    return (hash32(bits(c[1]) * 0xd8163841u ^ bits(c[2]) * 0xcb1ab31fu) + bits(c[0])) &
            (first_.size() - 2);  // a power of two, and one more
   }
 
