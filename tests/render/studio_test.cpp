@@ -52,9 +52,13 @@ TEST(PaperLight, AWhiteFurnaceLightsItEvenly) {
   light.bake_open(one, 2, 1);
   EXPECT_NEAR(light.irradiance({0.5f, 0, 0.2f}).x, 1, 1e-5f);
   EXPECT_NEAR(light.irradiance({0.5f, 4, -2.45f}).x, 1, 1e-5f);
-  const auto wet = [](const Vec3f& p, const Vec3f&, Sampler&) { return p.x < 0.5f ? Vec3f{0.5f, 0.5f, 0.5f} : Vec3f{1, 1, 1}; };
+  const auto wet = [](const Vec3f& p, const Vec3f&, Sampler&) {
+    return p.x < 0.5f ? Vec3f{0.5f, 0.5f, 0.5f} : Vec3f{1, 1, 1};
+  };
   const auto lies = [](const Vec3f& p) {
-    return p.x < 0.5f ? PaperLight::Over::clear : p.x > 0.9f && p.x < 1 ? PaperLight::Over::opaque : PaperLight::Over::nothing;
+    return p.x < 0.5f              ? PaperLight::Over::clear
+           : p.x > 0.9f && p.x < 1 ? PaperLight::Over::opaque
+                                   : PaperLight::Over::nothing;
   };
   light.bake_near({{0, 0, 0}, {1, 0.5f, 0.5f}}, wet, one, lies, 4, 1);
   // The edge of what is under clear matter stays sharp, and nothing leaks from below what is

@@ -45,6 +45,8 @@ class Film {
   struct Aside {
     Vec3f normal, albedo;  ///< sums
   };
+  /// The largest step to a pixel beside, as shown, less what noise may make of it.
+  float edge_at(std::size_t x, std::size_t y, const std::vector<float>& error) const;
   void expose_tile(std::size_t tx, std::size_t ty);
   void expose_pixel(std::size_t i, int x, int y);
 

@@ -43,8 +43,8 @@ void PaperLight::bake_open(const Arriving& arriving, int rays, std::uint64_t see
   open_ = std::move(g);
 }
 
-void PaperLight::bake_near(const Box3f& box, const Arriving& arriving, const Arriving& open, const Lies& lies,
-                           int rays, std::uint64_t seed) {
+void PaperLight::bake_near(const Box3f& box, const Arriving& arriving, const Arriving& open, const Lies& lies, int rays,
+                           std::uint64_t seed) {
   const float margin = reach * paper_.scale(), wide = box.size().x + 2 * margin, deep = box.size().z + 2 * margin;
   const float cell = std::max(near_cell * paper_.scale(), std::sqrt(wide * deep / most_cells));
   std::array<Layer, 2> layers;

@@ -42,7 +42,7 @@ class PaperLight {
   float front_;  ///< m, along the sheet: where the coarse cells begin
   LightGrid open_;
   std::array<Layer, 2> near_;  ///< under air, under clear matter
-  float x0_ = 0, z0_ = 0;  ///< m: where the fine cells begin
+  float x0_ = 0, z0_ = 0;      ///< m: where the fine cells begin
 };
 
 }  // namespace dreampm::trace
