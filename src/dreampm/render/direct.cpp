@@ -150,7 +150,7 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
     if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
     if (hit.kind == Kind::dielectric) {
       if (!through_clear) return {};
-      if (const Interior* in = geometry_.interior(media.top())) share = share * transmission(in->extinction, hit.t);
+      share = share * geometry_.left(media.top(), o, d, hit.t);
       const float before = ior(geometry_, media);
       media = across(geometry_, hit, media);
       if (media.top() == air) d = outside;

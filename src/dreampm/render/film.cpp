@@ -13,8 +13,8 @@ namespace {
 
 constexpr int tile = 16;
 /// Few samples may all lie on one side of an edge, and so look sure, and a few levels of an edge
-/// show as steps. Where pixels beside each other differ by this, surer than their errors, so many
-/// times the least samples are taken, and in proportion less where they differ less.
+/// show as steps. Where pixels beside each other differ by `edge_step`, surer than their errors,
+/// `edge_samples` times the least samples are taken, and in proportion less where they differ less.
 constexpr float edge_step = 0.06f, edge_samples = 5;
 /// Brighter samples are fireflies.
 constexpr float brightest = 10;

@@ -8,6 +8,8 @@ namespace {
 constexpr int most_bounces = 15, most_bounces_physical = 48;
 /// A branch of weight w is followed with chance min(1, keep w): it never costs more than it shows.
 constexpr float keep = 50;
+/// The same of a grain: there are many along a way, and each costs a whole path of its own.
+constexpr float keep_grain = 4;
 /// Glow builds up at this rate [1/m].
 constexpr float glow_rate = 0.8f;
 const Vec3f bar_glow{0.08f, 0.16f, 0.144f};
@@ -86,8 +88,9 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
     const Vec3f left = transmission(before->extinction, hit.t);
     r.weight = r.weight * left * (1 / std::max(1e-30f, dot(free.share, left)));
   } else if (in != nullptr) {
-    if (glows) sum += r.weight * in->glow * (1 - std::exp(-glow_rate * hit.t));
-    r.weight = r.weight * transmission(in->extinction, hit.t);
+    const Vec3f left = geometry_.left(r.media.top(), r.o, r.d, hit.t);
+    if (glows) sum += r.weight * geometry_.glow(r.media.top(), left, hit.t) * (1 - std::exp(-glow_rate * hit.t));
+    r.weight = r.weight * left;
   }
   const Vec3f p = r.o + r.d * hit.t;
   if (hit.kind == Kind::floor) return at_floor(r, p, random, sum, stack);
@@ -204,7 +207,7 @@ bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   r.weight *= hit.opacity;
   if (hit.opacity < 1) {
     const bool both = r.bounces <= options_.splits && stack.room();
-    const float chance = both ? std::min(1.0f, keep * largest(r.weight)) : std::clamp(hit.opacity, 0.1f, 0.9f);
+    const float chance = both ? std::min(1.0f, keep_grain * largest(r.weight)) : std::clamp(hit.opacity, 0.1f, 0.9f);
     if (both) stack.paths[stack.size++] = passed;
     if (random.next() >= chance) {
       if (both) return false;

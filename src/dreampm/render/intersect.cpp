@@ -31,6 +31,7 @@ Geometry::Geometry(const RenderScene& scene)
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(traced(o.look));
     interiors_.push_back(looks_.back()->interior());
+    fields_.push_back(interiors_.back() != nullptr && !interiors_.back()->scatters ? o.absorption : nullptr);
     colors_.push_back(looks_.back()->color());
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "dreampm/render/color.h"
 #include "dreampm/render/looks.h"
 #include "dreampm/render/render.h"
 
@@ -69,6 +70,19 @@ class Geometry {
   const Interior* interior(int object) const {
     return object == air ? nullptr : interiors_[static_cast<std::size_t>(object)];
   }
+  /// What clear matter leaves of the light over t [m] from o along d; all of it in air.
+  Vec3f left(int object, const Vec3f& o, const Vec3f& d, float t) const {
+    if (object == air) return {1, 1, 1};
+    const auto i = static_cast<std::size_t>(object);
+    return fields_[i] != nullptr ? fields_[i]->left(o, d, t) : transmission(interiors_[i]->extinction, t);
+  }
+  /// The glow of clear matter of which a way of t [m] left that much.
+  Vec3f glow(int object, const Vec3f& left, float t) const {
+    const auto i = static_cast<std::size_t>(object);
+    if (fields_[i] == nullptr || !(t > 0)) return interiors_[i]->glow;
+    const auto mean = [t](float share) { return -std::log(std::max(1e-30f, share)) / t; };
+    return glow_of({mean(left.x), mean(left.y), mean(left.z)});
+  }
   const TextureFrame& frame(int object) const { return frames_[static_cast<std::size_t>(object)]; }
   /// Of overlapping objects that of the highest rank is there.
   int rank(int object) const { return ranks_[static_cast<std::size_t>(object)]; }
@@ -90,8 +104,9 @@ class Geometry {
 
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<TracedShape> shapes_;                 ///< by Embree's geometry number
-  std::vector<std::unique_ptr<const Look>> looks_;  ///< these five by object
+  std::vector<std::unique_ptr<const Look>> looks_;  ///< these six by object
   std::vector<const Interior*> interiors_;
+  std::vector<const AbsorptionField*> fields_;
   std::vector<Vec3f> colors_;
   std::vector<TextureFrame> frames_;
   std::vector<int> ranks_;

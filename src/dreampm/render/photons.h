@@ -42,8 +42,7 @@ void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& d
         continue;
       }
       if (hit.kind == Kind::none) break;
-      if (const Interior* in = geometry.interior(r.media.top()))
-        r.weight = r.weight * transmission(in->extinction, hit.t);
+      r.weight = r.weight * geometry.left(r.media.top(), r.o, r.d, hit.t);
       const Vec3f p = r.o + r.d * hit.t;
       if (hit.kind == Kind::floor || hit.kind == Kind::opaque) {
         land(hit, p, r.d, r.weight, r.bent);
