@@ -11,8 +11,8 @@ namespace dreampm {
 /// Absorption [1/m] at the middles of the cubic cells of a box, between them linear, beyond them as
 /// at the edge.
 struct AbsorptionField {
-  Vec3f corner{};   ///< m, the least one of the box
-  float cell = 1;   ///< m
+  Vec3f corner{};  ///< m, the least one of the box
+  float cell = 1;  ///< m
   std::array<int, 3> size{1, 1, 1};
   std::vector<Vec3f> values;  ///< x runs fastest
 

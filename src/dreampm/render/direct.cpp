@@ -137,8 +137,10 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
                               bool through_clear) const {
   Vec3f share{1, 1, 1};
   for (int step = 0; step < 24; ++step) {
-    const Hit hit = cast_visible(geometry_, o, d, media, reach);
-    if (hit.kind == Kind::none) return share;
+    PassedGrains passed;
+    const Hit hit = cast_visible(geometry_, o, d, media, reach, &passed);
+    share *= passed.left;
+    if (hit.kind == Kind::none || largest(share) < 1e-3f) return share;
     reach -= hit.t;
     const Vec3f p = o + d * hit.t;
     if (hit.grain > 0) {

@@ -8,8 +8,6 @@ namespace {
 constexpr int most_bounces = 15, most_bounces_physical = 48;
 /// A branch of weight w is followed with chance min(1, keep w): it never costs more than it shows.
 constexpr float keep = 50;
-/// The same of a grain: there are many along a way, and each costs a whole path of its own.
-constexpr float keep_grain = 4;
 /// Glow builds up at this rate [1/m].
 constexpr float glow_rate = 0.8f;
 const Vec3f bar_glow{0.08f, 0.16f, 0.144f};
@@ -70,7 +68,10 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
   FreePath free;
   if (cloudy) free = free_path(r, *before, random);
   if (cloudy && free.length < r.clear) return scatter(r, *before, free, random, sum);
-  const Hit hit = cast_visible(geometry_, r.o, r.d, r.media, free.length);
+  // Grains are met by lot: to follow both what one covers and the rest would cost a path each.
+  PassedGrains grains;
+  if (geometry_.has_grains()) grains.lot = 1 | static_cast<std::uint32_t>(random.next() * 0x1p32f);
+  const Hit hit = cast_visible(geometry_, r.o, r.d, r.media, free.length, geometry_.has_grains() ? &grains : nullptr);
   if (cloudy && hit.kind == Kind::none) return scatter(r, *before, free, random, sum);
   r.clear = 0;
   if (options_.lamps != nullptr && r.sun_disc)
@@ -102,7 +103,7 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
     if (random.next() * weak >= w) return false;
     r.weight *= weak / w;
   }
-  if (hit.grain > 0) return at_grain(r, hit, p, random, sum, stack);
+  if (hit.grain > 0) return at_grain(r, hit, p, random, sum);
   if (hit.kind != Kind::opaque) return at_clear(r, hit, p, random, sum, stack);
   return at_surface(r, hit, p, random, sum, stack);
 }
@@ -196,28 +197,7 @@ bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, PathStack& 
   return along(lobe, r);
 }
 
-// What a grain covers scatters, and the rest goes on: both ways are followed, so that a grain
-// smaller than a pixel is a share of it and no noise.
-bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
-                          PathStack& stack) const {
-  --r.bounces;  // passing is no bounce
-  Path passed = r;
-  passed.o = p + r.d * geometry_.epsilon();
-  passed.weight *= 1 - hit.opacity;
-  r.weight *= hit.opacity;
-  if (hit.opacity < 1) {
-    const bool both = r.bounces <= options_.splits && stack.room();
-    const float chance = both ? std::min(1.0f, keep_grain * largest(r.weight)) : std::clamp(hit.opacity, 0.1f, 0.9f);
-    if (both) stack.paths[stack.size++] = passed;
-    if (random.next() >= chance) {
-      if (both) return false;
-      r = passed;
-      r.weight *= 1 / (1 - chance);
-      return true;
-    }
-    r.weight *= 1 / chance;
-  }
-  ++r.bounces;
+bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const {
   const Vec3f off = (p - hit.center) / hit.grain;
   const float out = std::sqrt(std::max(0.0f, 1 - dot(off, off)));
   const Vec3f n = normalized(off - r.d * out), view = -r.d;
@@ -243,6 +223,7 @@ bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   const float a = random.next(), b = random.next();
   r.d = cosine_direction(Frame(side), a, b);
   r.o = hit.center + side * (hit.grain + geometry_.epsilon());
+  r.bounces = std::max(r.bounces, options_.splits + 1);
   r.sun_disc = false, r.polished = true, r.gathered = r.sky_counted = false;
   return true;
 }

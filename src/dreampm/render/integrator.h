@@ -48,7 +48,7 @@ class Integrator {
   bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
   bool at_surface(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
   bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
-  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const;
   bool bounce(Path& path, const Shading& at, Sampler& random, PathStack& stack) const;
 
   // The light that arrives at surfaces: direct.cpp.

@@ -2,6 +2,7 @@
 // floor. A face of the water that lies on a wall plane stands for water, glass and air in one
 // event, so there is never a false gap of air nor a fight of coplanar faces.
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -39,6 +40,18 @@ struct Hit {
   float u = 0, v = 0;                        ///< on the triangle
 };
 
+/// The grains that a ray passes on its way, gathered while it looks for its first hit.
+struct PassedGrains {
+  struct Met {
+    float t, left;  ///< m, and what the grain leaves of the light
+    unsigned grain;
+  };
+  std::array<Met, 64> met;
+  std::size_t count = 0;
+  float left = 1;         ///< of those that are nearer than all first hits so far
+  std::uint32_t lot = 0;  ///< if not 0, each is met instead, or not, with a chance of its opacity
+};
+
 class Geometry {
  public:
   /// Builds the tree. Throws InputError for a broken mesh, RunError if Embree fails.
@@ -49,7 +62,10 @@ class Geometry {
 
   /// `medium`: the object that the ray runs in, or air. d has unit length. `time`: through the
   /// exposure, 0 to 1. Nothing further than `reach` [m] is met.
-  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach = 1e9f) const;
+  /// With `passed`, its `left` is dimmed by the grains before what is met; of these there may be
+  /// one, where there were too many to note.
+  Hit cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach = 1e9f,
+           PassedGrains* passed = nullptr) const;
   /// Returns m: nothing that a ray in clear matter may meet lies nearer to p; at most `most`. 0
   /// where anything moves within the exposure.
   float clearance(const Vec3f& p, float most) const;
@@ -57,6 +73,7 @@ class Geometry {
   Vec3f velocity(const Hit& hit) const;
   /// True if anything is at different places within the exposure.
   bool moves() const { return moves_; }
+  bool has_grains() const { return has_grains_; }
   /// Everything but the floor.
   const Box3f& bounds() const { return bounds_; }
   /// Does the ray from o along d meet bounds()?
@@ -100,6 +117,7 @@ class Geometry {
   void add_bars();
   void attach(RTCGeometryTy* g, TracedShape shape);
   int wall_of(const Vec3f& a, const Vec3f& b, const Vec3f& c) const;
+  Hit first_of(const Vec3f& o, const Vec3f& d, int medium, float time, float reach, PassedGrains* passed) const;
   void cast_panes(const Vec3f& o, const Vec3f& d, Hit& hit, int wall) const;
 
   std::unique_ptr<EmbreeScene> embree_;
@@ -115,7 +133,7 @@ class Geometry {
   bool has_floor_, has_glass_;
   float floor_y_, scale_, epsilon_;
   float open_;  ///< s, how long a picture is exposed
-  bool moves_ = false;
+  bool moves_ = false, has_grains_ = false;
 };
 
 }  // namespace dreampm::trace

@@ -34,7 +34,9 @@ void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& d
   while (n > 0) {
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {
-      const Hit hit = cast_visible(geometry, r.o, r.d, r.media);
+      PassedGrains passed;
+      const Hit hit = cast_visible(geometry, r.o, r.d, r.media, 1e9f, &passed);
+      r.weight *= passed.left;
       if (hit.grain > 0) {  // what it does not cover goes on
         r.weight *= 1 - hit.opacity;
         if (largest(r.weight) < weakest_photon) break;
