@@ -72,6 +72,18 @@ TEST(Environment, DrawnLightHasTheIrradianceAndTheDensityIsWhole) {
   }
 }
 
+TEST(Environment, ItsBrightPartsAreWhatIsAboveTheLimit) {
+  const Environment e = picture_of(128, spot);
+  const auto bright = e.bright_parts(3);
+  ASSERT_TRUE(bright.has_value());
+  const Vec3f at = normalized(Vec3f{0.3f, 0.8f, -0.5f}), all = e.radiance(at), above = bright->radiance(at);
+  EXPECT_GT(luminance(above), 0);
+  EXPECT_NEAR(above.x / all.x, above.z / all.z, 1e-4f);
+  EXPECT_LT(luminance(all - above), 0.1f * luminance(all));
+  EXPECT_EQ(bright->radiance({0, -1, 0}).x, 0);
+  EXPECT_FALSE(picture_of(64, ramp).bright_parts(3).has_value());
+}
+
 TEST(Environment, TurnsByTheRightHandAboutTheVertical) {
   // A quarter turn brings what was towards +x towards -z.
   const auto ahead = [](const Vec3f& d) { return d.x > 0.9f ? Vec3f{5, 5, 5} : Vec3f{}; };
@@ -127,6 +139,26 @@ TEST(Environment, ASmallBrightLightLightsAPlateAsItsIrradianceSays) {
       }
     EXPECT_NEAR(mean.y, sum, 0.03 * sum);
   }
+}
+
+TEST(Environment, CausticsByPhotonsBringTheLightThatChanceBrings) {
+  // A slab of glass over a matte plate: the light of a spot through it.
+  const std::string file =
+      written("spot2.exr", 128, 64, [](int x, int y) { return x > 30 && x < 40 && y > 5 && y < 15 ? 60.0f : 0.3f; });
+  const TriMesh plate = box_mesh({-3, -0.2f, -3}, {3, -0.1f, 3}), slab = box_mesh({-1, 0, -1}, {1, 0.2f, 1});
+  RenderScene scene = before_uniform_sky({&plate, model::Look::opaque(srgb_of({0.5f, 0.5f, 0.5f}))}, 6);
+  model::Look glass;
+  glass.type = model::LookType::dielectric, glass.ior = 1.5, glass.absorption = {0, 0, 0};
+  scene.objects.push_back({&slab, glass});
+  scene.light.environment = file;
+  scene.camera.from = {0.2, 4, 0.1};
+  RenderSettings settings = small_picture(16, 16, 1024);
+  settings.caustics = false;
+  const Vec3f by_chance = mean_of(render(scene, settings));
+  settings.caustics = true, settings.samples = settings.min_samples = 64;
+  const Vec3f by_photons = mean_of(render(scene, settings));
+  // The standard error of chance is a hundredth.
+  EXPECT_NEAR(by_photons.y, by_chance.y, 0.03f * by_chance.y);
 }
 
 TEST(Environment, ABadFileIsNamedWithWhatIsWrong) {

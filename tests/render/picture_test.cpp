@@ -185,5 +185,19 @@ TEST(Denoiser, ItsFailureIsAnErrorWithItsWords) {
   }
 }
 
+TEST(Picture, EdgesBetweenColorsAreSampledWhateverTheNoiseAskedFor) {
+  // A red plate before white, of which 4 samples a pixel are enough but for its edges.
+  const TriMesh plate = box_mesh({-0.5f, -0.5f, -0.1f}, {0.5f, 0.53f, 0});
+  const RenderScene scene = before_uniform_sky({&plate, model::Look::opaque(srgb_of({0.9f, 0.2f, 0.2f}))}, 30);
+  RenderSettings settings = small_picture(64, 64, 4);
+  settings.samples = 64, settings.noise = 10;
+  const Picture all = render_picture(scene, settings);
+  // Its edges are about 120 of 4,096 pixels, each with one beside it.
+  EXPECT_GT(all.report.samples, 4.2);
+  EXPECT_LT(all.report.samples, 6);
+  settings.crop = PixelBox{28, 28, 36, 36};
+  EXPECT_EQ(render_picture(scene, settings).report.samples, 4);
+}
+
 }  // namespace
 }  // namespace dreampm

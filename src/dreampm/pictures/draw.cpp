@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <list>
 
+#include "dreampm/math/look_color.h"
+#include "dreampm/pictures/absorption_of.h"
 #include "dreampm/pictures/foam_grains.h"
 
 namespace dreampm {
@@ -73,17 +75,22 @@ Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vec
   // What the picture borrows.
   std::list<TriMesh> meshes;
   std::list<std::vector<Vec3f>> arrays;
+  std::list<AbsorptionField> fields;
   for (int m = 0; m < static_cast<int>(scene.materials.size()); ++m) {
     const model::Look& look = look_of(scene, m);
-    const bool spheres = look.type == model::LookType::spheres,
-               colored = look.type != model::LookType::dielectric && many_colored(scene, m);
+    const bool spheres = look.type == model::LookType::spheres, many = many_colored(scene, m),
+               clear = look.type == model::LookType::dielectric, colored = many && !clear;
     std::vector<Vec3f>&positions = arrays.emplace_back(), &colors = arrays.emplace_back(),
     &velocities = arrays.emplace_back();
-    if (spheres || colored) {
+    const AbsorptionField* absorption = nullptr;
+    if (spheres || many) {
       const ParticleFrame& frame = content.particles();
       MaterialParticles particles = particles_of(scene, m, frame);
       positions = std::move(particles.position), velocities = std::move(particles.velocity);
-      if (colored) colors = particle_colors(scene, m, frame, bodies);
+      if (many) colors = particle_colors(scene, m, frame, bodies);
+      if (clear && is_clear(look) && !positions.empty())
+        absorption = &fields.emplace_back(absorption_field(positions, colors, static_cast<float>(scene.space.spacing)));
+      if (clear) colors.clear();
     }
     const auto cut = cut_of(scene, scene.materials[static_cast<std::size_t>(m)].name, shift);
     if (spheres) {
@@ -100,6 +107,7 @@ Picture draw_frame(const model::Scene& scene, const Vec3d& shift, const std::vec
       colors = vertex_colors(mesh, positions, colors, static_cast<float>(scene.space.spacing), mixing_of(look));
     if (cut) cut_mesh(mesh, colors, *cut);
     out.objects.push_back({&mesh, material_look(scene, m), colors});
+    out.objects.back().absorption = absorption;
   }
   FoamGrains grains;
   if (scene.foam && content.foam) {

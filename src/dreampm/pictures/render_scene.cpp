@@ -5,6 +5,7 @@
 #include "dreampm/base/error.h"
 #include "dreampm/math/look_color.h"
 #include "dreampm/math/srgb.h"
+#include "dreampm/pictures/absorption_of.h"
 #include "dreampm/render/texture_frame.h"
 #include "dreampm/setup/collider_mesh.h"
 #include "dreampm/surface/carry.h"
@@ -258,7 +259,10 @@ DrawnColliders ColliderModels::at(std::span<const Pose> poses, double time, cons
 
 model::Look material_look(const model::Scene& scene, int material) {
   model::Look look = scene.render.looks.at(scene.materials[std::size_t(material)].name);
-  look.color = common_color(scene, material).value_or(look.color);
+  if (const auto common = common_color(scene, material)) {
+    look.color = *common;
+    if (is_clear(look)) look.absorption = absorption_of(linear_color(*common));
+  }
   return look;
 }
 

@@ -19,6 +19,8 @@ class Bsdf {
   /// Is the lobe so narrow that it shows the discs of lights? Such lobes have no `eval` and no
   /// `pdf`: both are 0.
   virtual bool mirror(int) const { return false; }
+  /// Does the lobe send light from all over the hemisphere, so that lights alone say where to look?
+  virtual bool wide(int) const { return false; }
   /// The share of light from everywhere that the lobe sends to the view, of a color of 1.
   virtual float share(int lobe, float cos_view) const = 0;
   /// Scattering times the cosine of the light [1/sr].
@@ -40,6 +42,7 @@ class Bsdf {
 class Matte final : public Bsdf {
  public:
   int lobes() const override { return 1; }
+  bool wide(int) const override { return true; }
   float share(int, float) const override { return 1; }
   using Bsdf::eval;
   Vec3f eval(int, const Vec3f&, const Vec3f& light, const Vec3f& color) const override;

@@ -60,7 +60,7 @@ bool Integrator::scatter(Path& r, const Interior& in, const FreePath& free, Samp
   if (options_.lamps != nullptr) sum += r.weight * lit_within(r, in, options_.lamps->draw(r.o, random), random);
   const float a = random.next(), b = random.next();
   r.d = sample_phase(r.d, in.anisotropy, a, b);
-  r.sun_disc = false, r.polished = true, r.density = 0;
+  r.sun_disc = false, r.polished = true, r.gathered = r.sky_counted = false;
   r.bounces = std::max(r.bounces, options_.splits + 1);
   return true;
 }

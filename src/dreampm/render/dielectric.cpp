@@ -9,14 +9,6 @@
 namespace dreampm::trace {
 namespace {
 
-/// Light scattered inside a thick layer: what its absorption lets through over a few decimeters,
-/// none in a clear one.
-Vec3f glow_of(const Vec3d& absorption) {
-  const double strength = 0.36 * std::min(1.0, std::max({absorption.x, absorption.y, absorption.z}) / 6);
-  const auto channel = [&](double a) { return static_cast<float>(strength * std::exp(-0.22 * std::pow(a, 1.38))); };
-  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
-}
-
 class Dielectric final : public Look {
  public:
   explicit Dielectric(const model::Look& look) : Look(look) {
@@ -26,7 +18,7 @@ class Dielectric final : public Look {
     interior_.extinction = interior_.absorption + interior_.scattering;
     interior_.anisotropy = static_cast<float>(look.anisotropy);
     interior_.scatters = look.scattering.x > 0 || look.scattering.y > 0 || look.scattering.z > 0;
-    if (!interior_.scatters) interior_.glow = glow_of(look.absorption);  // else it is traced
+    if (!interior_.scatters) interior_.glow = glow_of(interior_.absorption);  // else it is traced
   }
   const Interior* interior() const override { return &interior_; }
   std::unique_ptr<const Bsdf> bsdf(float) const override { return nullptr; }
@@ -37,6 +29,13 @@ class Dielectric final : public Look {
 };
 
 }  // namespace
+
+// What its absorption lets through over a few decimeters, none in a clear one.
+Vec3f glow_of(const Vec3f& absorption) {
+  const float strength = 0.36f * std::min(1.0f, std::max({absorption.x, absorption.y, absorption.z}) / 6);
+  const auto channel = [&](float a) { return strength * std::exp(-0.22f * std::pow(a, 1.38f)); };
+  return {channel(absorption.x), channel(absorption.y), channel(absorption.z)};
+}
 
 std::unique_ptr<const Look> make_dielectric(const model::Look& look) { return std::make_unique<Dielectric>(look); }
 

@@ -4,6 +4,30 @@
 #include "dreampm/render/path.h"
 
 namespace dreampm::trace {
+namespace {
+
+/// Rays to the sky from a surface that a path meets early, and directions drawn for each.
+constexpr int most_sky_rays = 4, draws_each = 4;
+constexpr float golden = 0.618033989f;
+
+/// One of several directions, each with a chance in proportion to its weight.
+struct Choice {
+  Vec3f direction, chosen;  ///< and the light that it would send
+  float all = 0, of_chosen = 1;
+  float lot = 0;  ///< uniform in [0, 1); what a choice leaves of it is so again
+
+  void offer(const Vec3f& d, const Vec3f& sent, float inverse_density) {
+    const float sum = sent.x + sent.y + sent.z, weight = sum * inverse_density;
+    if (!(weight > 0)) return;
+    all += weight;
+    if (const float share = weight / all; lot < share)
+      chosen = sent, direction = d, of_chosen = sum, lot /= share;
+    else
+      lot = (lot - share) / (1 - share);
+  }
+};
+
+}  // namespace
 
 Vec3f Integrator::lit(const Path& r, const Shading& at, Sampler& random) const {
   Vec3f sum = lit_by(sunlight(at.p, at.n, at.face, r.media, random), at);
@@ -25,22 +49,53 @@ Vec3f Integrator::lit_by(const LightSample& light, const Shading& at) {
   return light.irradiance * at.bsdf.eval(at.view, at.frame.local(light.direction), at.color);
 }
 
-/// By multiple importance sampling with the bounce, which Path::density says of it (Veach 1997,
-/// the balance heuristic), lobe by lobe.
+/// Draws directions by the sky's brightness and by narrow lobes, and of these the ones that are
+/// followed, by what each would send to the path if nothing were in the way: resampled importance
+/// sampling (Talbot, Cline and Egbert 2005), with the balance heuristic (Veach 1997) over where a
+/// direction came from. What is left to chance is little more than what is in the way.
 Vec3f Integrator::lit_by_sky(const Path& r, const Shading& at, Sampler& random) const {
   const Environment* const sky = sky_.aimed_at();
   if (sky == nullptr) return {};
+  const int rays = r.bounces <= options_.splits
+                       ? std::clamp(static_cast<int>(std::ceil(most_sky_rays * largest(r.weight))), 1, most_sky_rays)
+                       : 1;
+  const int drawn = draws_each * rays;
+  std::array<Choice, most_sky_rays> choices;
   const float a = random.next(), b = random.next();
-  const Environment::Drawn drawn = sky->draw(a, b);
-  const Vec3f light = at.frame.local(drawn.direction);
-  if (!(drawn.density > 0) || light.z <= 0 || dot(at.face, drawn.direction) <= 0) return {};
-  Vec3f scattered;
-  for (int lobe = 0; lobe < at.bsdf.lobes(); ++lobe)
-    scattered +=
-        at.bsdf.eval(lobe, at.view, light, at.color) * (1 / (drawn.density + at.bsdf.pdf(lobe, at.view, light)));
-  if (!(largest(scattered) > 0)) return {};
-  return drawn.radiance * scattered *
-         transmitted(at.p + at.face * geometry_.epsilon(), drawn.direction, drawn.direction, r.media, 1e9f, false);
+  for (int i = 0; i < rays; ++i) choices[static_cast<std::size_t>(i)].lot = random.next();
+  const auto offer = [&](Choice& choice, const Vec3f& d, const Vec3f& light, const Vec3f& radiance, float density) {
+    if (light.z <= 0 || dot(at.face, d) <= 0) return;
+    Vec3f scattered;
+    float densities = static_cast<float>(drawn) * density;
+    for (int lobe = 0; lobe < at.bsdf.lobes(); ++lobe) {
+      scattered += at.bsdf.eval(lobe, at.view, light, at.color);
+      if (!at.bsdf.wide(lobe)) densities += at.bsdf.pdf(lobe, at.view, light);
+    }
+    if (densities > 0) choice.offer(d, radiance * scattered, 1 / densities);
+  };
+  for (int k = 0; k < drawn; ++k) {  // a lattice of rank 1, shifted
+    const float u = a + (static_cast<float>(k) + 0.5f) / static_cast<float>(drawn),
+                v = b + static_cast<float>(k) * golden;
+    const Environment::Drawn& one = sky->drawn_before(u - std::floor(u), v - std::floor(v));
+    if (one.density > 0)
+      offer(choices[static_cast<std::size_t>(k / draws_each)], one.direction, at.frame.local(one.direction),
+            one.radiance, one.density);
+  }
+  for (int lobe = 0; lobe < at.bsdf.lobes(); ++lobe) {
+    if (at.bsdf.mirror(lobe) || at.bsdf.wide(lobe)) continue;
+    const float c = random.next(), e = random.next();
+    const Bsdf::Sample s = at.bsdf.sample(lobe, at.view, at.color, c, e);
+    if (!(largest(s.weight) > 0)) continue;
+    const Vec3f d = at.frame.world(s.light.x, s.light.y, s.light.z);
+    offer(choices[static_cast<std::size_t>(lobe % rays)], d, s.light, sky->radiance(d), sky->density(d));
+  }
+  Vec3f sum;
+  for (const Choice& choice : choices)
+    if (choice.all > 0)
+      sum +=
+          choice.chosen * (choice.all / choice.of_chosen) *
+          transmitted(at.p + at.face * geometry_.epsilon(), choice.direction, choice.direction, r.media, 1e9f, false);
+  return sum;
 }
 
 // Paths count radiance over the square of the index where they are.
@@ -82,8 +137,10 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
                               bool through_clear) const {
   Vec3f share{1, 1, 1};
   for (int step = 0; step < 24; ++step) {
-    const Hit hit = cast_visible(geometry_, o, d, media, reach);
-    if (hit.kind == Kind::none) return share;
+    PassedGrains passed;
+    const Hit hit = cast_visible(geometry_, o, d, media, reach, &passed);
+    share *= passed.left;
+    if (hit.kind == Kind::none || largest(share) < 1e-3f) return share;
     reach -= hit.t;
     const Vec3f p = o + d * hit.t;
     if (hit.grain > 0) {
@@ -95,7 +152,7 @@ Vec3f Integrator::transmitted(Vec3f o, Vec3f d, const Vec3f& outside, Media medi
     if (hit.kind == Kind::opaque || hit.kind == Kind::floor) return {};
     if (hit.kind == Kind::dielectric) {
       if (!through_clear) return {};
-      if (const Interior* in = geometry_.interior(media.top())) share = share * transmission(in->extinction, hit.t);
+      share = share * geometry_.left(media.top(), o, d, hit.t);
       const float before = ior(geometry_, media);
       media = across(geometry_, hit, media);
       if (media.top() == air) d = outside;

@@ -1,6 +1,7 @@
 // Embree 3 and 4 under one name: what they call differently.
 #pragma once
 #include "dreampm/base/error.h"
+#include "dreampm/render/intersect.h"
 #if DM_EMBREE == 3
 #include <embree3/rtcore.h>
 #else
@@ -25,15 +26,47 @@ struct EmbreeScene {
   }
 };
 
-/// The first hit of a ray with a scene.
-inline void first_hit(RTCScene scene, RTCRayHit& ray) {
 #if DM_EMBREE == 3
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene, &context, &ray);
+using RayContext = RTCIntersectContext;
 #else
-  rtcIntersect1(scene, &ray);
+using RayContext = RTCRayQueryContext;
 #endif
+/// What filters get to know about a ray.
+struct GrainContext {
+  RayContext base;
+  PassedGrains* passed;  ///< or null: grains are hit
+};
+
+/// The first hit of a ray with a scene.
+inline void first_hit(RTCScene scene, RTCRayHit& ray, PassedGrains* passed) {
+  GrainContext context{{}, passed};
+#if DM_EMBREE == 3
+  rtcInitIntersectContext(&context.base);
+  rtcIntersect1(scene, &context.base, &ray);
+#else
+  rtcInitRayQueryContext(&context.base);
+  RTCIntersectArguments arguments;
+  rtcInitIntersectArguments(&arguments);
+  arguments.context = &context.base;
+  rtcIntersect1(scene, &ray, &arguments);
+#endif
+}
+
+/// Of grains: notes them and lets the ray pass, as long as there is room.
+inline void pass_grain(const RTCFilterFunctionNArguments* a) {
+  PassedGrains* const passed = reinterpret_cast<GrainContext*>(a->context)->passed;
+  if (passed == nullptr || passed->count == passed->met.size()) return;
+  const unsigned grain = RTCHitN_primID(a->hit, a->N, 0);
+  const float opacity = static_cast<const float*>(a->geometryUserPtr)[grain];
+  if (passed->lot != 0) {
+    if (unit_float(hash32(passed->lot ^ hash32(grain))) >= opacity) a->valid[0] = 0;
+    return;
+  }
+  a->valid[0] = 0;
+  // Embree may come to one grain more than once.
+  for (std::size_t i = 0; i < passed->count; ++i)
+    if (passed->met[i].grain == grain) return;
+  passed->met[passed->count++] = {RTCRayN_tfar(a->ray, a->N, 0), 1 - opacity, grain};
 }
 
 }  // namespace dreampm::trace

@@ -42,6 +42,31 @@ Environment::Environment(int width, int height, std::vector<Vec3f> pixels, float
     }
     rows_[y + 1] = rows_[y] + sums[width_];
   }
+  pool_.resize(pool_side * pool_side);
+  for (std::size_t i = 0; i < pool_.size(); ++i) {
+    const auto inside = [&](std::size_t k, std::size_t dimension) {
+      const auto h = hash32(static_cast<std::uint32_t>(2 * i + dimension));
+      return (static_cast<float>(k) + unit_float(h)) / static_cast<float>(pool_side);
+    };
+    pool_[i] = draw(inside(i / pool_side, 0), inside(i % pool_side, 1));
+  }
+}
+
+std::optional<Environment> Environment::bright_parts(float times) const {
+  constexpr double little = 0.02;
+  double all = 0, bright = 0;
+  for (std::size_t i = 0; i < pixels_.size(); ++i)
+    all += static_cast<double>(luminance(pixels_[i])) * solid_angle_[i / width_];
+  const float limit = times * static_cast<float>(all / (4 * std::numbers::pi));
+  std::vector<Vec3f> pixels(pixels_.size());
+  for (std::size_t i = 0; i < pixels_.size(); ++i) {
+    const float l = luminance(pixels_[i]);
+    if (l <= limit) continue;
+    pixels[i] = pixels_[i] * (1 - limit / l);
+    bright += static_cast<double>(l - limit) * solid_angle_[i / width_];
+  }
+  if (bright < little * all) return std::nullopt;
+  return Environment(static_cast<int>(width_), static_cast<int>(height_), std::move(pixels), turn_);
 }
 
 Environment::Place Environment::place_of(const Vec3f& d) const {

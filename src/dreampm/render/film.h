@@ -36,14 +36,17 @@ class Film {
   /// Samples of one pixel so far.
   struct Pixel {
     Vec3f sum;
-    float shown = 0, shown2 = 0;  ///< of the lightness as shown, and its square
+    Vec3f shown, shown2;  ///< sums of each channel as shown, and of its square
     int count = 0;
-    /// The standard error of the mean lightness.
+    /// The standard error of the mean, the root mean square over the channels: edges between
+    /// colors of one lightness count, too.
     float error() const;
   };
   struct Aside {
     Vec3f normal, albedo;  ///< sums
   };
+  /// The largest step to a pixel beside, as shown, less what noise may make of it.
+  float edge_at(std::size_t x, std::size_t y, const std::vector<float>& error) const;
   void expose_tile(std::size_t tx, std::size_t ty);
   void expose_pixel(std::size_t i, int x, int y);
 

@@ -26,7 +26,7 @@ FirstHit FirstHits::at(Vec3f o, Vec3f d, float time) const {
     }
     const Vec3f p = o + d * hit.t;
     way += hit.t;
-    if (const Interior* in = geometry_.interior(media.top())) weight = weight * transmission(in->extinction, hit.t);
+    weight = weight * geometry_.left(media.top(), o, d, hit.t);
     if (hit.kind == Kind::pane || (hit.grain > 0 && hit.opacity < 0.5f)) {
       if (hit.kind == Kind::pane) weight = weight * pane_tint;
       o = p + d * geometry_.epsilon();

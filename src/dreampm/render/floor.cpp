@@ -65,15 +65,6 @@ FloorLight::FloorLight(const Geometry& geometry, const Sky& sky, const Box3f& ba
   (dz < 0 ? z0_ : z1_) += dz;
 }
 
-Vec3f FloorLight::Grid::at(float u, float v) const {
-  u = std::clamp(u - 0.5f, 0.0f, static_cast<float>(width) - 1.001f);
-  v = std::clamp(v - 0.5f, 0.0f, static_cast<float>(height) - 1.001f);
-  const int x = static_cast<int>(u), y = static_cast<int>(v);
-  const Vec3f* p = &values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-  const float fx = u - static_cast<float>(x);
-  return mix(mix(p[0], p[1], fx), mix(p[width], p[width + 1], fx), v - static_cast<float>(y));
-}
-
 Vec3f FloorLight::irradiance(float x, float z, float ior) const {
   Vec3f share{1, 1, 1}, sky = sky_.open_irradiance();
   const float inside = std::min(std::min(x - x0_, x1_ - x), std::min(z - z0_, z1_ - z));
@@ -89,11 +80,8 @@ Vec3f FloorLight::irradiance(float x, float z, float ior) const {
 void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
   if (!sky_.has_sun()) return;
   const float width = x1_ - x0_, depth = z1_ - z0_;
-  Grid g;
-  g.cell = std::max(0.003f * scale_, std::sqrt(width * depth / 2e6f));
-  g.width = std::max(2, static_cast<int>(std::ceil(width / g.cell))),
-  g.height = std::max(2, static_cast<int>(std::ceil(depth / g.cell)));
-  const std::size_t cells = static_cast<std::size_t>(g.width) * static_cast<std::size_t>(g.height);
+  LightGrid g = LightGrid::covering(width, depth, std::max(0.003f * scale_, std::sqrt(width * depth / 2e6f)));
+  const std::size_t cells = g.values.size();
   const float span_x = static_cast<float>(g.width) * g.cell, span_z = static_cast<float>(g.height) * g.cell;
   const float each = static_cast<float>(cells) / static_cast<float>(photons);
   std::array<std::vector<Vec3f>, photon_parts> parts;
@@ -127,22 +115,18 @@ void FloorLight::bake_sun(bool bend, int photons, std::uint64_t seed) {
                     });
     }
   });
-  g.values.assign(cells, {});
   parallel_for(cells, 65536, [&](std::size_t i) {
     for (const auto& part : parts) g.values[i] += part[i];
   });
-  blur(g, 1.3f);
+  g.blur(1.3f);
   for (Vec3f& c : g.values) c = max(Vec3f{}, Vec3f{1, 1, 1} + c);
   sun_ = std::move(g);
 }
 
 void FloorLight::bake_sky(const Gather& gather, int rays, std::uint64_t seed) {
-  Grid g;
-  g.cell = std::max(0.03f * scale_, std::sqrt((x1_ - x0_) * (z1_ - z0_) / 2e4f));
-  g.width = std::max(2, static_cast<int>(std::ceil((x1_ - x0_) / g.cell)));
-  g.height = std::max(2, static_cast<int>(std::ceil((z1_ - z0_) / g.cell)));
+  LightGrid g =
+      LightGrid::covering(x1_ - x0_, z1_ - z0_, std::max(0.03f * scale_, std::sqrt((x1_ - x0_) * (z1_ - z0_) / 2e4f)));
   const std::size_t w = static_cast<std::size_t>(g.width);
-  g.values.assign(w * static_cast<std::size_t>(g.height), {});
   const Frame up({0, 1, 0});
   parallel_for(g.values.size(), 64, [&](std::size_t i) {
     Vec3f sum;
@@ -157,35 +141,8 @@ void FloorLight::bake_sky(const Gather& gather, int rays, std::uint64_t seed) {
     }
     g.values[i] = max(Vec3f{}, sky_.open_irradiance() + sum * (pi / static_cast<float>(rays)));
   });
-  blur(g, 0.8f);
+  g.blur(0.8f);
   sky_grid_ = std::move(g);
-}
-
-void FloorLight::blur(Grid& g, float sigma) {
-  const int reach = static_cast<int>(std::ceil(2.5f * sigma));
-  std::vector<float> weight;
-  float sum = 0;
-  for (int i = -reach; i <= reach; ++i)
-    sum += weight.emplace_back(std::exp(-0.5f * static_cast<float>(i * i) / (sigma * sigma)));
-  for (float& w : weight) w /= sum;
-  std::vector<Vec3f> half(g.values.size());
-  const auto pass = [&](const std::vector<Vec3f>& in, std::vector<Vec3f>& out, bool across) {
-    parallel_for(static_cast<std::size_t>(g.height), 16, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < g.width; ++x) {
-        Vec3f c;
-        for (int i = -reach; i <= reach; ++i) {
-          const int xx = across ? std::clamp(x + i, 0, g.width - 1) : x,
-                    yy = across ? y : std::clamp(y + i, 0, g.height - 1);
-          c += in[static_cast<std::size_t>(yy) * static_cast<std::size_t>(g.width) + static_cast<std::size_t>(xx)] *
-               weight[static_cast<std::size_t>(i + reach)];
-        }
-        out[row * static_cast<std::size_t>(g.width) + static_cast<std::size_t>(x)] = c;
-      }
-    });
-  };
-  pass(g.values, half, true);
-  pass(half, g.values, false);
 }
 
 }  // namespace dreampm::trace

@@ -4,14 +4,13 @@
 #include <functional>
 #include <vector>
 
+#include "dreampm/render/backdrop.h"
 #include "dreampm/render/intersect.h"
+#include "dreampm/render/light_grid.h"
 #include "dreampm/render/sampler.h"
 #include "dreampm/render/sky.h"
 
 namespace dreampm::trace {
-
-/// Of the studio's backdrop.
-inline constexpr Vec3f studio_paper{0.72f, 0.72f, 0.72f};
 
 /// The floor's reflectance.
 class FloorPattern {
@@ -49,18 +48,10 @@ class FloorLight {
   Vec3f irradiance(float x, float z, float ior) const;
 
  private:
-  struct Grid {
-    int width = 0, height = 0;
-    float cell = 0;
-    std::vector<Vec3f> values;
-    Vec3f at(float u, float v) const;
-  };
-  static void blur(Grid& grid, float sigma);
-
   const Geometry& geometry_;
   const Sky& sky_;
   float x0_, z0_, x1_, z1_, top_, scale_;
-  Grid sun_, sky_grid_;  ///< sun: share of the open floor's; sky: irradiance
+  LightGrid sun_, sky_grid_;  ///< sun: share of the open floor's; sky: irradiance
 };
 
 }  // namespace dreampm::trace

@@ -16,6 +16,7 @@ class Glossy : public Bsdf {
  public:
   int lobes() const final { return has_base_ ? 2 : 1; }
   bool mirror(int lobe) const final { return lobe == 0 && mirror_; }
+  bool wide(int lobe) const final { return lobe == 1; }
   float share(int lobe, float cos_view) const final;
   using Bsdf::eval;
   Vec3f eval(int lobe, const Vec3f& view, const Vec3f& light, const Vec3f& color) const final;

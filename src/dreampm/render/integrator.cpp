@@ -26,20 +26,38 @@ Vec3f Integrator::radiance(const Vec3f& o, const Vec3f& d, Sampler& random, floa
   first.sun_disc = options_.sun_disc;
   first.polished = !options_.looks;
   Vec3f sum;
+  follow(stack, random, sum);
+  return sum;
+}
+
+void Integrator::follow(PathStack& stack, Sampler& random, Vec3f& sum) const {
   while (stack.size > 0) {
     Path r = stack.paths[--stack.size];
     while (step(r, random, sum, stack)) {
     }
   }
-  return sum;
+}
+
+Vec3f Integrator::arriving(const Vec3f& p, const Vec3f& n, Sampler& random, float time) const {
+  PathStack stack;
+  Path r;
+  r.media.time = time;
+  r.sun_disc = false;
+  const Shading white{p, n, n, Frame(n), {0, 0, 1}, {1, 1, 1}, matte_};
+  Vec3f sum = lit(r, white, random);
+  if (bounce(r, white, random, stack)) {
+    stack.paths[stack.size++] = r;
+    follow(stack, random, sum);
+  }
+  return sum * pi;
 }
 
 /// Radiance of what lies beyond all surfaces.
 Vec3f Integrator::beyond(const Path& r) const {
+  if (r.sky_counted && sky_.aimed_at() != nullptr) return {};
   const Vec3f sky = sky_.radiance(r.d, r.sun_disc);
-  const Environment* const aimed_at = sky_.aimed_at();
-  if (r.density == 0 || aimed_at == nullptr) return sky;
-  return sky * (r.density / (r.density + aimed_at->density(r.d)));
+  if (!r.gathered || options_.photons == nullptr || sky_.bright_parts() == nullptr) return sky;
+  return max(Vec3f{}, sky - sky_.bright_parts()->radiance(r.d));
 }
 
 /// To the next surface, or the next place in cloudy matter that scatters. False: the path ends.
@@ -50,7 +68,10 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
   FreePath free;
   if (cloudy) free = free_path(r, *before, random);
   if (cloudy && free.length < r.clear) return scatter(r, *before, free, random, sum);
-  const Hit hit = cast_visible(geometry_, r.o, r.d, r.media, free.length);
+  // Grains are met by lot: to follow both what one covers and the rest would cost a path each.
+  PassedGrains grains;
+  if (geometry_.has_grains()) grains.lot = 1 | static_cast<std::uint32_t>(random.next() * 0x1p32f);
+  const Hit hit = cast_visible(geometry_, r.o, r.d, r.media, free.length, geometry_.has_grains() ? &grains : nullptr);
   if (cloudy && hit.kind == Kind::none) return scatter(r, *before, free, random, sum);
   r.clear = 0;
   if (options_.lamps != nullptr && r.sun_disc)
@@ -68,8 +89,9 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
     const Vec3f left = transmission(before->extinction, hit.t);
     r.weight = r.weight * left * (1 / std::max(1e-30f, dot(free.share, left)));
   } else if (in != nullptr) {
-    if (glows) sum += r.weight * in->glow * (1 - std::exp(-glow_rate * hit.t));
-    r.weight = r.weight * transmission(in->extinction, hit.t);
+    const Vec3f left = geometry_.left(r.media.top(), r.o, r.d, hit.t);
+    if (glows) sum += r.weight * geometry_.glow(r.media.top(), left, hit.t) * (1 - std::exp(-glow_rate * hit.t));
+    r.weight = r.weight * left;
   }
   const Vec3f p = r.o + r.d * hit.t;
   if (hit.kind == Kind::floor) return at_floor(r, p, random, sum, stack);
@@ -81,7 +103,7 @@ bool Integrator::step(Path& r, Sampler& random, Vec3f& sum, PathStack& stack) co
     if (random.next() * weak >= w) return false;
     r.weight *= weak / w;
   }
-  if (hit.grain > 0) return at_grain(r, hit, p, random, sum, stack);
+  if (hit.grain > 0) return at_grain(r, hit, p, random, sum);
   if (hit.kind != Kind::opaque) return at_clear(r, hit, p, random, sum, stack);
   return at_surface(r, hit, p, random, sum, stack);
 }
@@ -91,6 +113,10 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, 
   const Vec3f far = sky_.radiance(normalized(Vec3f{r.d.x, 0, r.d.z}), false);
   const float footprint = r.distance * options_.pixel_angle / std::max(0.05f, -r.d.y);
   const Vec3f albedo = pattern_.albedo(p.x, p.z, footprint);
+  if (options_.floor_light == nullptr && options_.paper_light != nullptr) {
+    sum += r.weight * mix(albedo * options_.paper_light->irradiance(p, r.media.top() == air) * (1 / pi), far, fade);
+    return false;
+  }
   if (options_.floor_light == nullptr) {
     sum += r.weight * far * fade;
     r.weight *= 1 - fade;
@@ -120,6 +146,10 @@ bool Integrator::at_floor(Path& r, const Vec3f& p, Sampler& random, Vec3f& sum, 
 bool Integrator::at_surface(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
                             PathStack& stack) const {
   const Vec3f n = hit.back ? -hit.normal : hit.normal, face = hit.back ? -hit.geometric : hit.geometric;
+  if (options_.paper_light != nullptr && hit.object == options_.paper) {
+    sum += r.weight * studio_paper * options_.paper_light->irradiance(p, r.media.top() == air) * (1 / pi);
+    return false;
+  }
   const Frame frame(n);
   const float slant = std::max(0.1f, std::fabs(dot(face, r.d)));
   const Vec3f color =
@@ -141,7 +171,7 @@ bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, PathStack& 
     path.weight = path.weight * s.weight;
     path.d = leaving(at.frame.world(s.light.x, s.light.y, s.light.z), at.face);
     path.sun_disc = before.sun_disc && at.bsdf.mirror(lobe);
-    path.density = at.bsdf.pdf(lobe, at.view, s.light);
+    path.gathered = path.sky_counted = !at.bsdf.mirror(lobe);
     return largest(s.weight) > 0;
   };
   int lobe = 0;
@@ -167,28 +197,7 @@ bool Integrator::bounce(Path& r, const Shading& at, Sampler& random, PathStack& 
   return along(lobe, r);
 }
 
-// What a grain covers scatters, and the rest goes on: both ways are followed, so that a grain
-// smaller than a pixel is a share of it and no noise.
-bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum,
-                          PathStack& stack) const {
-  --r.bounces;  // passing is no bounce
-  Path passed = r;
-  passed.o = p + r.d * geometry_.epsilon();
-  passed.weight *= 1 - hit.opacity;
-  r.weight *= hit.opacity;
-  if (hit.opacity < 1) {
-    const bool both = r.bounces <= options_.splits && stack.room();
-    const float chance = both ? std::min(1.0f, keep * largest(r.weight)) : std::clamp(hit.opacity, 0.1f, 0.9f);
-    if (both) stack.paths[stack.size++] = passed;
-    if (random.next() >= chance) {
-      if (both) return false;
-      r = passed;
-      r.weight *= 1 / (1 - chance);
-      return true;
-    }
-    r.weight *= 1 / chance;
-  }
-  ++r.bounces;
+bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const {
   const Vec3f off = (p - hit.center) / hit.grain;
   const float out = std::sqrt(std::max(0.0f, 1 - dot(off, off)));
   const Vec3f n = normalized(off - r.d * out), view = -r.d;
@@ -214,7 +223,8 @@ bool Integrator::at_grain(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   const float a = random.next(), b = random.next();
   r.d = cosine_direction(Frame(side), a, b);
   r.o = hit.center + side * (hit.grain + geometry_.epsilon());
-  r.sun_disc = false, r.polished = true, r.density = 0;
+  r.bounces = std::max(r.bounces, options_.splits + 1);
+  r.sun_disc = false, r.polished = true, r.gathered = r.sky_counted = false;
   return true;
 }
 
@@ -232,8 +242,8 @@ bool Integrator::at_clear(Path& r, const Hit& hit, const Vec3f& p, Sampler& rand
   Path reflected = r, passed = r;
   // Only glass of the basin lets light through straight, so that the sky lit the last surface
   // through it.
-  reflected.density = 0;
-  if (hit.kind == Kind::dielectric) passed.density = 0;
+  reflected.sky_counted = false;
+  if (hit.kind == Kind::dielectric) passed.sky_counted = false;
   reflected.o = p + s.side * geometry_.epsilon(), reflected.d = s.reflected;
   passed.o = p - s.side * geometry_.epsilon(), passed.d = s.refracted, passed.media = s.refracted_media;
   reflected.weight *= s.reflectance;

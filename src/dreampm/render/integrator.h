@@ -5,6 +5,7 @@
 #include "dreampm/render/floor.h"
 #include "dreampm/render/interface.h"
 #include "dreampm/render/lamps.h"
+#include "dreampm/render/paper_light.h"
 #include "dreampm/render/photons.h"
 #include "dreampm/render/surfaces.h"
 
@@ -17,13 +18,16 @@ struct Shading;
 
 struct PathOptions {
   const FloorLight* floor_light = nullptr;  ///< absent: the floor is traced plainly
-  const PhotonMap* photons = nullptr;       ///< absent: light goes straight through clear matter, only dimmed
-  const Lamps* lamps = nullptr;             ///< absent: none
-  bool physical = false;                    ///< no glow inside the water, no glow of the glass edges
-  bool looks = true;                        ///< false for gathering: no polish, no glow
-  bool sun_disc = true;                     ///< paths through clear surfaces alone see the sun and the lamps
-  int splits = 2;                           ///< follow both ways at this many first interfaces
-  float pixel_angle = 0;                    ///< rad, to filter the tiles
+  const PaperLight* paper_light =
+      nullptr;  ///< of a studio, with the object that is its backdrop; absent: traced plainly
+  int paper = air;
+  const PhotonMap* photons = nullptr;  ///< absent: light goes straight through clear matter, only dimmed
+  const Lamps* lamps = nullptr;        ///< absent: none
+  bool physical = false;               ///< no glow inside the water, no glow of the glass edges
+  bool looks = true;                   ///< false for gathering: no polish, no glow
+  bool sun_disc = true;                ///< paths through clear surfaces alone see the sun and the lamps
+  int splits = 2;                      ///< follow both ways at this many first interfaces
+  float pixel_angle = 0;               ///< rad, to filter the tiles
 };
 
 class Integrator {
@@ -34,14 +38,17 @@ class Integrator {
   /// From o along the unit vector d, starting in air, or in the medium of the first surface that is
   /// met from inside. `time`: through the exposure, 0 to 1.
   Vec3f radiance(const Vec3f& o, const Vec3f& d, Sampler& random, float time = 0.5f) const;
+  /// A sample of the irradiance at p of a surface in air that faces along n.
+  Vec3f arriving(const Vec3f& p, const Vec3f& n, Sampler& random, float time = 0.5f) const;
 
  private:
+  void follow(PathStack& stack, Sampler& random, Vec3f& sum) const;
   bool step(Path& path, Sampler& random, Vec3f& sum, PathStack& stack) const;
   Vec3f beyond(const Path& path) const;
   bool at_floor(Path& path, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
   bool at_surface(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
   bool at_clear(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
-  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum, PathStack& stack) const;
+  bool at_grain(Path& path, const Hit& hit, const Vec3f& p, Sampler& random, Vec3f& sum) const;
   bool bounce(Path& path, const Shading& at, Sampler& random, PathStack& stack) const;
 
   // The light that arrives at surfaces: direct.cpp.

@@ -54,7 +54,8 @@ Media across(const Geometry& geometry, const Hit& hit, Media media) {
   return media;
 }
 
-void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit, float reach) {
+void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit, float reach,
+                 PassedGrains* passed) {
   constexpr int most_hidden = 64;
   float before = 0;
   for (int hidden = 0; hit.object != air && hit.kind != Kind::opaque; ++hidden) {
@@ -69,7 +70,7 @@ void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media
     media = across(geometry, hit, media);
     before += hit.t;
     o = o + d * hit.t;
-    hit = geometry.cast(o, d, media.top(), media.time, reach - before);
+    hit = geometry.cast(o, d, media.top(), media.time, reach - before, passed);
   }
   hit.t += before;
 }

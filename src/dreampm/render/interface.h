@@ -24,14 +24,16 @@ class Media {
 };
 
 /// The part of cast_visible for a `hit` on clear matter or on the floor under it.
-void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit, float reach);
+void pass_hidden(const Geometry& geometry, Vec3f o, const Vec3f& d, Media& media, Hit& hit, float reach,
+                 PassedGrains* passed);
 
 /// The nearest surface that matters along a ray, as Geometry::cast, past faces that an object of a
 /// higher rank hides. `media` is what the ray is in at o; afterwards what it is in just before the
 /// surface, which the surface's side decides where both disagree.
-inline Hit cast_visible(const Geometry& geometry, const Vec3f& o, const Vec3f& d, Media& media, float reach = 1e9f) {
-  Hit hit = geometry.cast(o, d, media.top(), media.time, reach);
-  if (hit.object != air && hit.kind != Kind::opaque) pass_hidden(geometry, o, d, media, hit, reach);
+inline Hit cast_visible(const Geometry& geometry, const Vec3f& o, const Vec3f& d, Media& media, float reach = 1e9f,
+                        PassedGrains* passed = nullptr) {
+  Hit hit = geometry.cast(o, d, media.top(), media.time, reach, passed);
+  if (hit.object != air && hit.kind != Kind::opaque) pass_hidden(geometry, o, d, media, hit, reach, passed);
   return hit;
 }
 

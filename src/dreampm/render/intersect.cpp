@@ -31,6 +31,7 @@ Geometry::Geometry(const RenderScene& scene)
   for (const RenderObject& o : scene.objects) {
     looks_.push_back(traced(o.look));
     interiors_.push_back(looks_.back()->interior());
+    fields_.push_back(interiors_.back() != nullptr && !interiors_.back()->scatters ? o.absorption : nullptr);
     colors_.push_back(looks_.back()->color());
     frames_.push_back(o.frame);
     const int index = static_cast<int>(looks_.size()) - 1;
@@ -68,7 +69,18 @@ Vec3f Geometry::velocity(const Hit& hit) const {
   return hit.shape == no_shape ? Vec3f{} : shapes_[hit.shape].velocity(hit.primitive, hit.u, hit.v);
 }
 
-Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach) const {
+Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float reach, PassedGrains* passed) const {
+  const Hit hit = first_of(o, d, medium, time, reach, passed);
+  if (passed != nullptr) {
+    for (std::size_t i = 0; i < passed->count; ++i)
+      if (passed->met[i].t < hit.t) passed->left *= passed->met[i].left;
+    passed->count = 0;
+  }
+  return hit;
+}
+
+Hit Geometry::first_of(const Vec3f& o, const Vec3f& d, int medium, float time, float reach,
+                       PassedGrains* passed) const {
   Hit hit;
   hit.t = reach;
   int wall = 0;
@@ -79,7 +91,7 @@ Hit Geometry::cast(const Vec3f& o, const Vec3f& d, int medium, float time, float
     r.ray.tnear = epsilon_, r.ray.tfar = reach;
     r.ray.mask = ~0u, r.ray.time = time;
     r.hit.geomID = r.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    first_hit(embree_->scene, r);
+    first_hit(embree_->scene, r, passed);
     if (r.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
       const TracedShape& shape = shapes_[r.hit.geomID];
       const std::size_t primitive = r.hit.primID;

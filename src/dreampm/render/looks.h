@@ -19,6 +19,9 @@ struct Interior {
   bool scatters = false;
 };
 
+/// Light scattered inside a thick layer of that absorption [1/m], which is only look.
+Vec3f glow_of(const Vec3f& absorption);
+
 /// A point of a surface.
 struct SurfacePoint {
   Vec3f position;             ///< m

@@ -17,12 +17,11 @@ struct Path {
   int bounces = 0;
   float distance = 0;
   bool sun_disc = true;
-  bool polished = false;  ///< no further reflection in the floor's polish
-  /// 1/sr: with which a surface drew d that was lit by the sky directly, too; 0: it was not, and
-  /// for mirrors
-  float density = 0;
-  int scatterings = 0;  ///< in cloudy matter so far
-  float clear = 0;      ///< m: within that no surface is around o, while it is in cloudy matter
+  bool polished = false;     ///< no further reflection in the floor's polish
+  bool gathered = false;     ///< the last surface gathered photons, and was no mirror
+  bool sky_counted = false;  ///< the last surface was lit by the sky directly, as far as d sees it straight on
+  int scatterings = 0;       ///< in cloudy matter so far
+  float clear = 0;           ///< m: within that no surface is around o, while it is in cloudy matter
 };
 
 /// Paths that are still to be followed.

@@ -8,15 +8,18 @@ namespace {
 constexpr std::size_t parts = 16;  // fixed, so that the order does not depend on the threads
 /// On a surface that faces an unhindered light, as many photons lie within the filter's radius.
 constexpr float in_radius = 32;
+/// The same of light from wide parts of the sky, whose caustics are soft.
+constexpr float in_radius_soft = 48;
 
 }  // namespace
 
-/// The light of one lamp, or of the sun, towards a ball.
+/// The light of one lamp, of the sun, or of the bright parts of the sky, towards a ball.
 struct PhotonMap::Beam {
   Vec3f target;  ///< m, the ball's middle
   float radius;  ///< m, of the ball
   const Sky* sun = nullptr;
   const Lamp* lamp = nullptr;
+  const Environment* bright = nullptr;
 
   struct Start {
     Vec3f origin, direction, power;  ///< power: of one of N, times N
@@ -29,6 +32,14 @@ struct PhotonMap::Beam {
       const float r = radius * std::sqrt(c), phi = 2 * pi * d;
       const Vec3f across = Frame(to_sun).world(r * std::cos(phi), r * std::sin(phi), 0);
       return {target + across + to_sun * (2 * radius), -to_sun, sun->sun_irradiance() * (pi * radius * radius)};
+    }
+    if (bright != nullptr) {
+      const Environment::Drawn drawn = bright->draw(a, b);
+      if (!(drawn.density > 0)) return {};
+      const float r = radius * std::sqrt(c), phi = 2 * pi * d;
+      const Vec3f across = Frame(drawn.direction).world(r * std::cos(phi), r * std::sin(phi), 0);
+      return {target + across + drawn.direction * (2 * radius), -drawn.direction,
+              drawn.radiance * (pi * radius * radius / drawn.density)};
     }
     // From a disc that faces the ball, within the cone of the ball as seen from its middle.
     const Vec3f to = target - lamp->center;
@@ -47,12 +58,20 @@ struct PhotonMap::Beam {
 PhotonMap::PhotonMap(const Geometry& geometry, const Sky& sky, const Lamps& lamps, const Box3f& clear, bool on_floor,
                      int photons, std::uint64_t seed) {
   Beam beam{clear.center(), 0.5f * length(clear.size())};
-  radius_ = std::max(20 * geometry.epsilon(), std::sqrt(in_radius * beam.area() / (pi * static_cast<float>(photons))));
+  const bool soft = sky.bright_parts() != nullptr;
+  if (soft) photons /= 2;
+  radius_ = std::max(20 * geometry.epsilon(),
+                     std::sqrt((soft ? in_radius_soft : in_radius) * beam.area() / (pi * static_cast<float>(photons))));
   std::uint32_t pass = 3;
   if (sky.has_sun()) {
     beam.sun = &sky;
     follow(geometry, beam, on_floor, photons, seed, pass++);
     beam.sun = nullptr;
+  }
+  if (soft) {
+    beam.bright = sky.bright_parts();
+    follow(geometry, beam, on_floor, photons, seed, pass++);
+    beam.bright = nullptr;
   }
   for (const Lamp& lamp : lamps.all()) {
     beam.lamp = &lamp;

@@ -34,7 +34,9 @@ void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& d
   while (n > 0) {
     Photon r = stack[--n];
     for (; r.bounces < 12; ++r.bounces) {
-      const Hit hit = cast_visible(geometry, r.o, r.d, r.media);
+      PassedGrains passed;
+      const Hit hit = cast_visible(geometry, r.o, r.d, r.media, 1e9f, &passed);
+      r.weight *= passed.left;
       if (hit.grain > 0) {  // what it does not cover goes on
         r.weight *= 1 - hit.opacity;
         if (largest(r.weight) < weakest_photon) break;
@@ -42,8 +44,7 @@ void follow_photon(const Geometry& geometry, const Vec3f& origin, const Vec3f& d
         continue;
       }
       if (hit.kind == Kind::none) break;
-      if (const Interior* in = geometry.interior(r.media.top()))
-        r.weight = r.weight * transmission(in->extinction, hit.t);
+      r.weight = r.weight * geometry.left(r.media.top(), r.o, r.d, hit.t);
       const Vec3f p = r.o + r.d * hit.t;
       if (hit.kind == Kind::floor || hit.kind == Kind::opaque) {
         land(hit, p, r.d, r.weight, r.bent);
@@ -87,9 +88,9 @@ class PhotonMap {
   void at(const Vec3f& p, const Vec3f& n, Each&& each) const {
     if (photons_.empty()) return;
     const Cell middle = cell_of(p);
-    for (int i = -1; i <= 1; ++i)
-      for (int j = -1; j <= 1; ++j)
-        for (int k = -1; k <= 1; ++k) {
+    for (int j = -1; j <= 1; ++j)
+      for (int k = -1; k <= 1; ++k)
+        for (int i = -1; i <= 1; ++i) {
           const Cell cell{middle[0] + i, middle[1] + j, middle[2] + k};
           const std::size_t bucket = bucket_of(cell);
           for (std::uint32_t a = first_[bucket]; a < first_[bucket + 1]; ++a) {
@@ -117,7 +118,8 @@ class PhotonMap {
   }
   std::size_t bucket_of(const Cell& c) const {
     const auto bits = [](int i) { return static_cast<std::uint32_t>(i); };
-    return hash32(bits(c[0]) * 0x8da6b343u ^ bits(c[1]) * 0xd8163841u ^ bits(c[2]) * 0xcb1ab31fu) &
+    // Cells along x are neighbors in memory, too.
+    return (hash32(bits(c[1]) * 0xd8163841u ^ bits(c[2]) * 0xcb1ab31fu) + bits(c[0])) &
            (first_.size() - 2);  // a power of two, and one more
   }
 

@@ -17,6 +17,12 @@ namespace {
 using namespace trace;
 
 constexpr int photons = 1000000, photons_of_bodies = 400000, sky_rays = 24, sky_rays_first = 8;
+constexpr int paper_bounces = 5, paper_rays_first = 24, paper_rays = 96, near_rays_first = 8, near_rays = 48;
+
+/// Soft boxes leave no sharp shadow on the paper, which its cells could not hold.
+bool lit_by_soft_boxes(const RenderScene& scene) {
+  return scene.light.sky == SkyKind::studio && scene.light.environment.empty() && !(scene.light.sun.strength > 0);
+}
 
 /// Some settings are floats: what a float makes of a bound is within it, too.
 void in_range(const char* what, double value, double low, double high) {
@@ -59,6 +65,51 @@ void bake(FloorLight& light, const Integrator& bounce, bool moves, const RenderS
   // twice: the second round sees the light that the floor throws back on itself
   light.bake_sky(from, sky_rays_first, settings.seed);
   light.bake_sky(from, sky_rays, settings.seed + 1);
+}
+
+/// What sees the paper whose light is baked.
+struct Studio {
+  const RenderScene& scene;
+  const Geometry& geometry;
+  const trace::Sky& sky;
+  const FloorPattern& pattern;
+  PathOptions options;  ///< with the light
+  float scale;
+};
+
+/// Lights the paper: first empty, then what stands on it changes that.
+void bake(PaperLight& light, const Studio& studio, const RenderSettings& settings) {
+  RenderScene empty = studio.scene;
+  empty.objects = {studio.scene.objects.back()};
+  empty.stage.basin = model::Basin::none;
+  const Geometry open_geometry(empty);
+  PathOptions options = studio.options;
+  options.looks = options.sun_disc = false;
+  options.splits = 0;
+  PathOptions alone = options;
+  alone.paper = 0;
+  const Integrator full(studio.geometry, studio.sky, studio.pattern, studio.scale, options),
+      open(open_geometry, studio.sky, studio.pattern, studio.scale, alone);
+  const auto by = [moves = studio.geometry.moves()](const Integrator& integrator) {
+    return [&integrator, moves](const Vec3f& p, const Vec3f& n, Sampler& random) {
+      const float time = moves ? random.next() : 0.5f;
+      return integrator.arriving(p, n, random, time);
+    };
+  };
+  for (int bounce = 0; bounce < paper_bounces; ++bounce)
+    light.bake_open(by(open), bounce + 1 < paper_bounces ? paper_rays_first : paper_rays,
+                    settings.seed + static_cast<std::uint64_t>(bounce));
+  const auto lies = [&](const Vec3f& p) {
+    const Vec3f up{0, 1, 0};
+    const Hit hit = studio.geometry.cast(p + up * (2 * studio.geometry.epsilon()), up, air, 0.5f);
+    if (!hit.back) return PaperLight::Over::nothing;
+    return hit.kind == Kind::dielectric ? PaperLight::Over::clear
+           : hit.kind == Kind::opaque   ? PaperLight::Over::opaque
+                                        : PaperLight::Over::nothing;
+  };
+  for (int bounce = 0; bounce < 2; ++bounce)
+    light.bake_near(studio.scene.basin, by(full), by(open), lies, bounce == 0 ? near_rays_first : near_rays,
+                    settings.seed + static_cast<std::uint64_t>(bounce));
 }
 
 Picture exposed(const RenderSettings& settings, const Film::View& view, bool clamp, const RenderProgress& report) {
@@ -140,8 +191,9 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
   };
   const trace::Camera camera(scene.camera, scene.basin, settings.width, settings.height);
   RenderScene staged = scene;
-  const std::optional<TriMesh> paper = backdrop(scene, camera.eye());
-  if (paper) staged.objects.push_back({&*paper, paper_look(), {}});
+  const std::optional<Backdrop> backdrop = backdrop_of(scene, camera.eye());
+  const TriMesh paper = backdrop ? backdrop->mesh() : TriMesh{};
+  if (backdrop) staged.objects.push_back({&paper, paper_look(), {}});
   const Geometry geometry(staged);
   const trace::Sky sky(scene.light, scene.physical);
   const FloorPattern pattern(scene.basin, scene.stage.place);
@@ -166,6 +218,12 @@ Picture render_picture(const RenderScene& scene, const RenderSettings& settings,
     gather.splits = 0;
     gather.pixel_angle = 0.02f;
     bake(light, Integrator(geometry, sky, pattern, scale, gather), geometry.moves(), settings);
+  }
+  std::optional<PaperLight> paper_light;
+  if (backdrop && lit_by_soft_boxes(scene)) {
+    options.paper_light = &paper_light.emplace(*backdrop);
+    options.paper = geometry.objects() - 1;
+    bake(*paper_light, {staged, geometry, sky, pattern, options, scale}, settings);
   }
   report(0.2);
   const Integrator integrator(geometry, sky, pattern, scale, options);

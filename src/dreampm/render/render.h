@@ -16,6 +16,7 @@
 #include "dreampm/io/png.h"
 #include "dreampm/math/vec.h"
 #include "dreampm/model/render.h"
+#include "dreampm/render/absorption.h"
 
 namespace dreampm {
 
@@ -59,6 +60,9 @@ struct RenderObject {
   /// The mesh at even steps through the exposure, from its beginning to its end, of the same
   /// triangles; borrowed, too. Empty: its vertices go straight on with its velocities.
   std::vector<const TriMesh*> motion{};
+  /// Of clear matter of several colors, in place of its look's absorption; borrowed, too. Cloudy
+  /// matter has none.
+  const AbsorptionField* absorption = nullptr;
 };
 
 struct RenderScene {

@@ -235,6 +235,9 @@ void Geometry::add_grains(const RenderGrains& grains, int object) {
   shape.radii.assign(grains.radii.begin(), grains.radii.end());
   shape.velocities = velocities_of(grains.velocities, n, object);
   const RTCGeometry g = rtcNewGeometry(embree_->device, RTC_GEOMETRY_TYPE_DISC_POINT);
+  has_grains_ = true;
+  rtcSetGeometryUserData(g, shape.opacity.data());  // which stays where it is when the shape moves
+  rtcSetGeometryIntersectFilterFunction(g, pass_grain);
   for (std::size_t i = 0; i < n; ++i)
     if (const float r = grains.radii[i]; !is_finite(grains.positions[i]) || !(r > 0) || !std::isfinite(r))
       fail_input("render: grain {} of object {} is not finite, or its radius, {} m, is not above 0", i, object, r);

@@ -20,6 +20,9 @@ constexpr float soft_disc = 90;
 /// The share of the disc that casts shadows then: crisp caustics.
 constexpr float soft_shadow = 0.35f;
 
+/// An environment throws caustics where it is brighter than its mean by this factor.
+constexpr float bright_times = 3;
+
 /// Soft clouds on a flat layer, thinning to the horizon: cover in x, shade in y.
 std::pair<float, float> clouds(const Vec3f& d) {
   float x = 1.1f * d.x / (d.y + 0.12f) + 3.1f, z = 1.1f * d.z / (d.y + 0.12f) + 7.7f, sum = 0, weight = 0.5f;
@@ -112,6 +115,7 @@ Sky::Sky(const model::Light& light, bool physical) : kind_(light.sky), has_sun_(
   else if (kind_ != SkyKind::uniform)
     fill_table();
   if (environment_) {
+    bright_ = environment_->bright_parts(bright_times);
     open_ = environment_->irradiance({0, 1, 0});
     return;
   }

@@ -21,6 +21,8 @@ class Sky {
   Vec3f radiance(const Vec3f& d, bool with_sun) const;
   /// The sky as a picture, where it has small or bright parts that paths must aim at; else null.
   const Environment* aimed_at() const { return environment_ ? &*environment_ : nullptr; }
+  /// Its parts that are so bright that paths must not meet them by chance, or null.
+  const Environment* bright_parts() const { return bright_ ? &*bright_ : nullptr; }
   /// Irradiance of open, level ground by the sky alone.
   const Vec3f& open_irradiance() const { return open_; }
   bool has_sun() const { return has_sun_; }
@@ -43,6 +45,7 @@ class Sky {
   float disc_angle_, disc_cos_, shadow_tan_;
   std::vector<Vec3f> table_;                ///< of a clear sky and at night, above the horizon
   std::optional<Environment> environment_;  ///< in its place
+  std::optional<Environment> bright_;       ///< of it
 };
 
 }  // namespace dreampm::trace

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "dreampm/math/srgb.h"
-#include "dreampm/render/floor.h"
 
 namespace dreampm::trace {
 namespace {
@@ -25,30 +24,9 @@ Lamps lamps_of(const RenderScene& scene) {
                 {{b.max.x + off, y, b.max.z + off}, radius, warm}}};
 }
 
-std::optional<TriMesh> backdrop(const RenderScene& scene, const Vec3f& eye) {
+std::optional<Backdrop> backdrop_of(const RenderScene& scene, const Vec3f& eye) {
   if (scene.stage.place != model::Place::studio || scene.stage.floor == model::Floor::none) return std::nullopt;
-  const Box3f& b = scene.basin;
-  const float scale = scale_of(b);
-  Vec3f back = b.center() - eye;
-  back.y = 0;
-  back = length(back) > 1e-6f * scale ? normalized(back) : Vec3f{0, 0, -1};
-  const Vec3f side{-back.z, 0, back.x}, foot{b.center().x, b.min.y, b.center().z};
-  const float begin = 1.5f * scale, bend = 1.2f * scale, high = 6 * scale, wide = 9 * scale;
-  constexpr int steps = 32;
-  TriMesh mesh;
-  const auto add = [&](float behind, float above) {
-    for (const float w : {-wide, wide}) mesh.vertices.push_back(foot + back * behind + side * w + Vec3f{0, above, 0});
-  };
-  for (int i = 0; i <= steps; ++i) {
-    const float a = 1.5707963f * static_cast<float>(i) / steps;
-    add(begin + bend * std::sin(a), bend * (1 - std::cos(a)));
-  }
-  add(begin + bend, high);
-  for (std::uint32_t i = 0; i <= steps; ++i) {
-    mesh.triangles.push_back({2 * i, 2 * i + 1, 2 * i + 3});
-    mesh.triangles.push_back({2 * i, 2 * i + 3, 2 * i + 2});
-  }
-  return mesh;
+  return Backdrop(scene.basin, eye);
 }
 
 model::Look paper_look() {

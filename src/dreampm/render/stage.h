@@ -2,6 +2,7 @@
 #pragma once
 #include <optional>
 
+#include "dreampm/render/backdrop.h"
 #include "dreampm/render/intersect.h"
 #include "dreampm/render/lamps.h"
 #include "dreampm/render/render.h"
@@ -11,9 +12,8 @@ namespace dreampm::trace {
 /// The lamps of the scene's place, with its floor.
 Lamps lamps_of(const RenderScene& scene);
 
-/// The backdrop of a studio: paper that lies on the floor behind the basin, as seen from `eye` [m],
-/// and bends up. Nothing elsewhere, and without a floor.
-std::optional<TriMesh> backdrop(const RenderScene& scene, const Vec3f& eye);
+/// The backdrop of a studio, as seen from `eye` [m]. Nothing elsewhere, and without a floor.
+std::optional<Backdrop> backdrop_of(const RenderScene& scene, const Vec3f& eye);
 
 model::Look paper_look();
 

@@ -66,9 +66,12 @@ Vec3f develop(Vec3f c) {
   return {transfer(c.x), transfer(c.y), transfer(c.z)};
 }
 
-float shown_lightness(const Vec3f& c) {
-  const float x = exposure * luminance(c);
-  return x / (x + 0.7f);
+Vec3f as_shown(const Vec3f& c) {
+  const auto one = [](float radiance) {
+    const float x = exposure * std::max(0.0f, radiance);
+    return x / (x + 0.7f);
+  };
+  return {one(c.x), one(c.y), one(c.z)};
 }
 
 int bloom_reach(int height) { return reach_of(bloom_width(height)); }
