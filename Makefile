@@ -124,10 +124,16 @@ test-clang: build-clang/build.ninja
 	@$(CTEST) --test-dir build-clang $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES))))\.')
 
 # libdreampm_cuda.so beside the command: `--backend cuda`.
-cuda:
+cuda: build/setup-gpu.stamp
 	@tools/build_cuda build/libdreampm_cuda.so
 
-test-gpu: build/setup-dev.stamp
+build/setup-gpu.stamp: tools/packages-gpu.txt tools/python_env tools/setup tools/cuda-requirements.txt
+	@tools/setup tools/packages-gpu.txt
+	@rm -rf build/cuda-env
+	@tools/python_env build/cuda-env tools/cuda-requirements.txt
+	@touch $@
+
+test-gpu: build/setup-gpu.stamp
 	@start=$$(date +%s); tools/check_device cuda hip && tools/build_cuda build/test-gpu/libdreampm_cuda.so && \
 	  echo "3 passed in $$(($$(date +%s) - start)).0s"
 

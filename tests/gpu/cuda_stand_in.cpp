@@ -55,8 +55,8 @@ const char* launch(void* device, int kernel, const void* arguments, int blocks) 
   return nullptr;
 }
 
-constexpr CudaLibrary library{STAND_IN_VERSION, Kernels::size, open,   close,    about, memory,
-                              allocate,         release,       upload, download, launch};
+constexpr CudaLibrary library{
+    STAND_IN_VERSION, Kernels::fingerprint(), open, close, about, memory, allocate, release, upload, download, launch};
 
 }  // namespace
 }  // namespace dreampm::gpu

@@ -47,7 +47,7 @@ TEST_F(Cuda, SaysWhyThereIsNone) {
   EXPECT_THAT(refused.err, HasSubstr("no CUDA"));
   EXPECT_FALSE(std::filesystem::exists(folder / "none"));
   EXPECT_THAT(with(STAND_IN_OF_ANOTHER, "info --device").out,
-              AllOf(HasSubstr("belongs to another build"), HasSubstr("0.0.1"), HasSubstr("tools/build_cuda")));
+              AllOf(HasSubstr("belongs to another DreaMPM"), HasSubstr("0.0.1"), HasSubstr("make cuda")));
   EXPECT_THAT(with("libm.so.6", "info --device").out, HasSubstr("is no library of DreaMPM"));
   EXPECT_EQ(type("info dam.yaml --device").code, 2);
 }

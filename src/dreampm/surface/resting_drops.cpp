@@ -65,8 +65,7 @@ std::vector<float> RestingDrops::remaining(int number) {
       if (id == before.ids.end() || *id != now.ids[r.of]) continue;
       const Vec3f& x = before.positions[static_cast<std::size_t>(id - before.ids.begin())];
       if (length2(x - r.position) > most * most) continue;
-      left[now.place[r.of]] =
-          static_cast<float>(std::pow(std::max(0.0, 1 - (now.time - before.time) / life_), 1.5));
+      left[now.place[r.of]] = static_cast<float>(std::pow(std::max(0.0, 1 - (now.time - before.time) / life_), 1.5));
       still.push_back({r.of, x});
     }
     resting.swap(still);

@@ -11,9 +11,9 @@ namespace dreampm::surface {
 
 /// The particles of a liquid in a frame.
 struct LiquidFrame {
-  double time = 0;                   ///< s
-  std::vector<std::int32_t> ids;     ///< ascending
-  std::vector<Vec3f> positions{};    ///< m
+  double time = 0;                 ///< s
+  std::vector<std::int32_t> ids;   ///< ascending
+  std::vector<Vec3f> positions{};  ///< m
 };
 
 /// Particles rest while they are with few others and slow: fewer than 8 within 2.5 spacings, and by
@@ -35,7 +35,7 @@ class RestingDrops {
   /// Those with few others, in the order of their ids.
   struct Lonely {
     double time = 0;
-    std::size_t all = 0;             ///< particles in the frame
+    std::size_t all = 0;               ///< particles in the frame
     std::vector<std::uint32_t> place;  ///< of each in its frame
     std::vector<std::int32_t> ids;
     std::vector<Vec3f> positions;

@@ -81,10 +81,11 @@ TEST(Playground, PouredToothpasteTakesItsRestVolume) {
   ASSERT_GT(paste.size(), 800u);
   double believed = 0;
   for (const float j : paste.J) believed += static_cast<double>(j) / static_cast<double>(paste.size());
-  const double taken =
-      volume_taken(
-          {paste.position, {}, 0.02f, {{0, 0, 0}, {0.4f, 0.4f, 0.24f}}, {true, true, true, true, true, true}}) /
-      (static_cast<double>(paste.size()) * 8e-6);
+  const double taken = volume_taken({.positions = paste.position,
+                                     .spacing = 0.02f,
+                                     .walls = {{0, 0, 0}, {0.4f, 0.4f, 0.24f}},
+                                     .is_wall = {true, true, true, true, true, true}}) /
+                       (static_cast<double>(paste.size()) * 8e-6);
   std::printf("%zu particles take %.3f of their rest volume, and believe %.3f\n", paste.size(), taken, believed);
   EXPECT_NEAR(taken, 1, 0.05);
   EXPECT_NEAR(believed, 1, 0.05);

@@ -7,6 +7,7 @@
 
 #include "dreampm/backend/cpu/arena.h"
 #include "dreampm/backend/node_loops.h"
+#include "dreampm/backend/pass_limits.h"
 #include "dreampm/backend/pass_stats.h"
 #include "dreampm/physics/particle.h"
 
@@ -25,12 +26,6 @@ struct PrefetchHints {
   std::uintptr_t from;       ///< base of the rows from which the next block gathers, or 0
   std::uintptr_t to;         ///< base of the rows to which this block scatters; their first half is fetched
 };
-
-/// Columns of state that a material may have (docs/howto/add-a-material.md).
-inline constexpr int most_state_columns = 16;
-
-/// Stands for the distance of a particle that does not need it exactly.
-inline constexpr float no_distance = 1e30f;
 
 /// The particles of one set in one block, for one pass.
 struct BlockPass {

@@ -23,7 +23,8 @@ constexpr int place_in_arena(int x, int y, int z) { return x * arena_plane + y *
 /// A node of an arena by number, as arenas lie in memory.
 struct ArenaNode {
   int x, y, z;
-  explicit DM_FN ArenaNode(int n) : x(n / (arena_width * arena_width)), y(n / arena_width % arena_width), z(n % arena_width) {}
+  explicit DM_FN ArenaNode(int n)
+      : x(n / (arena_width * arena_width)), y(n / arena_width % arena_width), z(n % arena_width) {}
   DM_FN int place() const { return place_in_arena(x, y, z); }
   /// Which of the eight blocks of the grid holds it, and its number there.
   DM_FN int corner() const { return (x / block_width * 2 + y / block_width) * 2 + z / block_width; }
@@ -31,7 +32,8 @@ struct ArenaNode {
 };
 /// The number of node `n` of corner block `corner` in the arena.
 DM_FN int number_in_arena(int corner, int n) {
-  const int x = corner / 4 * block_width + n / (block_width * block_width), y = corner / 2 % 2 * block_width + n / block_width % block_width,
+  const int x = corner / 4 * block_width + n / (block_width * block_width),
+            y = corner / 2 % 2 * block_width + n / block_width % block_width,
             z = corner % 2 * block_width + n % block_width;
   return (x * arena_width + y) * arena_width + z;
 }
@@ -41,8 +43,9 @@ struct alignas(16) NodeCounts {
   std::int32_t x, y, z, m;
 };
 
-/// What the matter of a block may put on one node at most, per field: mass [kg] and rest volume
-/// over dx^3 [1]. No weight is above 0.75^3.
+/// What all sets of a block may put on one node at most, per field: mass [kg] and rest volume over
+/// dx^3 [1]. No weight is above 0.75^3; and it is no less than one particle's whole, which is
+/// counted before it is spread.
 struct BlockLoad {
   float mass[2], volume;
 };
@@ -61,27 +64,27 @@ struct ScatterUnits {
   float momentum, mass;
 };
 /// The largest power of two whose product with `most` is at most 2^30; `most` >= 0.
-DM_FN float counts_per_unit(float most) {
-  return exp2_int(29.0f - exponent_of(max(most, 1e-25f)));
-}
+DM_FN float counts_per_unit(float most) { return exp2_int(29.0f - exponent_of(max(most, 1e-25f))); }
 /// The larger of each.
 DM_FN ScatterBounds largest(const ScatterBounds& a, const ScatterBounds& b) {
-  return {max(a.speed, b.speed), max(a.mass, b.mass), max(a.volume_ratio, b.volume_ratio), max(a.viscosity, b.viscosity)};
+  return {max(a.speed, b.speed), max(a.mass, b.mass), max(a.volume_ratio, b.volume_ratio),
+          max(a.viscosity, b.viscosity)};
 }
 /// True if nothing that was found is beyond what was assumed.
 DM_FN bool within(const ScatterBounds& found, const ScatterBounds& assumed) {
-  return !(found.speed > assumed.speed) && !(found.mass > assumed.mass) && !(found.volume_ratio > assumed.volume_ratio) &&
-         !(found.viscosity > assumed.viscosity);
+  return !(found.speed > assumed.speed) && !(found.mass > assumed.mass) &&
+         !(found.volume_ratio > assumed.volume_ratio) && !(found.viscosity > assumed.viscosity);
 }
 
-/// Units of momentum and mass of a field. That of mass fits whatever comes: so the most that comes
-/// is known, and with it whether momentum fitted.
+/// Units of momentum and mass of a field. That of mass fits all that the block holds: so the most
+/// that came to a node is known, and with it whether momentum fitted.
 DM_FN ScatterUnits field_units(const BlockLoad& load, int field, const ScatterBounds& bounds) {
   return {counts_per_unit(min(load.mass[field], bounds.mass) * bounds.speed), counts_per_unit(load.mass[field])};
 }
 /// Units of the mixture: of volumes, in place of a momentum, and of viscosity times mass.
 DM_FN ScatterUnits mixture_units(const BlockLoad& load, const ScatterBounds& bounds) {
-  return {counts_per_unit(load.volume * max(bounds.volume_ratio, 1.0f)), counts_per_unit(load.mass[0] * bounds.viscosity)};
+  return {counts_per_unit(load.volume * max(bounds.volume_ratio, 1.0f)),
+          counts_per_unit(load.mass[0] * bounds.viscosity)};
 }
 
 }  // namespace dreampm::gpu

@@ -38,7 +38,11 @@ class Buffer {
  public:
   explicit Buffer(Device& device) : device_(&device) {}
   ~Buffer() { device_->release(data_); }
-  Buffer(Buffer&& b) noexcept : device_(b.device_), data_(std::exchange(b.data_, nullptr)), room_(std::exchange(b.room_, 0)), size_(std::exchange(b.size_, 0)) {}
+  Buffer(Buffer&& b) noexcept
+      : device_(b.device_),
+        data_(std::exchange(b.data_, nullptr)),
+        room_(std::exchange(b.room_, 0)),
+        size_(std::exchange(b.size_, 0)) {}
   Buffer& operator=(Buffer&& b) noexcept {
     std::swap(device_, b.device_), std::swap(data_, b.data_), std::swap(room_, b.room_), std::swap(size_, b.size_);
     return *this;
@@ -48,7 +52,7 @@ class Buffer {
   void resize(std::size_t size) {
     if (size > room_) {
       device_->release(std::exchange(data_, nullptr));
-      room_ = 0;
+      room_ = size_ = 0;
       const std::size_t wanted = size + size / 8;
       data_ = static_cast<T*>(device_->allocate(wanted * sizeof(T)));
       room_ = wanted;

@@ -92,7 +92,7 @@ class Gpu final : public Backend<float> {
     });
     upload_nodes(world);
     if (obstacles_.any_thin()) upload_distances(world);
-    ScatterBounds bounds = assumed_bounds(world);
+    ScatterBounds bounds = assumed_bounds(world, world.node_speed);
     PassStats total;
     for (;;) {
       const ScatterBounds found = pass(world, dt, dt_next, motion != nullptr, bounds, total);
@@ -104,7 +104,7 @@ class Gpu final : public Backend<float> {
       bounds = gpu::largest(bounds, widened(found));
     }
     for (std::size_t t = 0; t < targets; ++t) sum_arenas(t, bounds);
-    for (gpu::SetMemory& set : memory_.sets) set.swap();
+    for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].swap(world.sets[s].transfer.keeps_velocity());
     swap_fields(world.grid, next_);
     home_ = MatterFields::id | MatterFields::nodes;
     if (motion) download_motion(world, *motion);
@@ -120,8 +120,10 @@ class Gpu final : public Backend<float> {
 
   void download(World<float>& world, Motion<float>&, MatterFields fields) override { bring_home(world, fields); }
   void upload(const World<float>& world, const Motion<float>&, MatterFields fields) override {
+    memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      if (includes(fields, MatterFields::position)) memory_.sets[s].upload_position(world.sets[s]);
+      if (includes(fields, MatterFields::position))
+        memory_.sets[s].upload_position(world.sets[s], world.particle_blocks.size());
       if (includes(fields, MatterFields::state)) memory_.sets[s].upload_state(world.sets[s]);
     }
     home_ = home_ | fields;
@@ -141,6 +143,7 @@ class Gpu final : public Backend<float> {
   void bring_home(World<float>& world, MatterFields fields) {
     const auto wants = [&](MatterFields part) { return includes(fields, part) && !includes(home_, part); };
     const bool position = wants(MatterFields::position), state = wants(MatterFields::state);
+    memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       if (position) memory_.sets[s].download_position(world.sets[s]);
       if (state) memory_.sets[s].download_state(world.sets[s]);
@@ -160,7 +163,7 @@ class Gpu final : public Backend<float> {
   void upload_particles(const World<float>& world) {
     memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      memory_.sets[s].upload_position(world.sets[s]);
+      memory_.sets[s].upload_position(world.sets[s], world.particle_blocks.size());
       memory_.sets[s].upload_state(world.sets[s]);
     }
     home_ = MatterFields::all;
@@ -181,13 +184,19 @@ class Gpu final : public Backend<float> {
     upload_obstacles(world);
   }
   static gpu::BlockLoad load_of(const World<float>& world, std::size_t block) {
-    std::array<double, 2> mass{};
-    double volume = 0;
+    std::array<double, 2> mass{}, one_mass{};
+    double volume = 0, one_volume = 0;
     for (const ParticleSet<float>& set : world.sets) {
-      const double count = set.size() == 0 ? 0 : set.block_start[block + 1] - set.block_start[block];
-      mass[world.field_of(set)] += gpu::largest_weight * count * set.mass;
-      volume += gpu::largest_weight * count * set.rest_volume / (world.dx * world.dx * world.dx);
+      if (set.size() == 0) continue;
+      const double count = set.block_start[block + 1] - set.block_start[block];
+      const double cells = set.rest_volume / (world.dx * world.dx * world.dx);
+      const std::size_t field = world.field_of(set);
+      mass[field] += gpu::largest_weight * count * set.mass;
+      volume += gpu::largest_weight * count * cells;
+      one_mass[field] = std::max(one_mass[field], set.mass), one_volume = std::max(one_volume, cells);
     }
+    for (std::size_t f = 0; f < 2; ++f) mass[f] = std::max(mass[f], one_mass[f]);
+    volume = std::max(volume, one_volume);
     return {{static_cast<float>(mass[0]), static_cast<float>(mass[1])}, static_cast<float>(volume)};
   }
   static std::vector<std::int32_t> flat(const std::vector<StencilBlocks>& all) {
@@ -216,7 +225,7 @@ class Gpu final : public Backend<float> {
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       const ParticleSet<float>& set = world.sets[s];
       std::array<std::vector<float>, 4> distance;
-      for (auto& column : distance) column.assign(set.size(), gpu::no_distance);
+      for (auto& column : distance) column.assign(set.size(), no_distance);
       if (set.size() > 0)
         parallel_for(world.particle_blocks.size(), 8, [&](std::size_t b) {
           const ThinWalls thin(obstacles_, stencil_blocks_[b]);
@@ -250,15 +259,19 @@ class Gpu final : public Backend<float> {
 
   // ---- passes
 
-  static ScatterBounds assumed_bounds(const World<float>& world) {
-    const auto& [speed, mass, ratio, viscosity] = world.scatter_bounds;
-    return widened({static_cast<float>(std::max(speed, world.node_speed)), static_cast<float>(mass > 0 ? mass : 1e20),
-                    static_cast<float>(std::max(ratio, 2.0)), static_cast<float>(std::max(viscosity, world.viscosity))});
+  /// `speed` [m/s]: of the fastest node.
+  static ScatterBounds assumed_bounds(const World<float>& world, double speed) {
+    const auto& [scattered, mass, ratio, viscosity] = world.scatter_bounds;
+    double one = 0;  // no less than a particle's whole
+    for (const ParticleSet<float>& set : world.sets) one = std::max(one, set.mass);
+    return widened({static_cast<float>(std::max(scattered, speed)),
+                    static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20), static_cast<float>(std::max(ratio, 2.0)),
+                    static_cast<float>(std::max(viscosity, world.viscosity))});
   }
 
   /// Takes a set's turn to write to a target's arenas.
-  gpu::PassOutput::Arena arena(const GridFields<float>& grid, std::size_t target) {
-    if (host_field(const_cast<GridFields<float>&>(grid), target).empty()) return {nullptr, false};
+  gpu::PassOutput::Arena arena(std::size_t target) {
+    if (host_field(next_, target).empty()) return {nullptr, false};
     memory_.arenas[target].resize(stencil_blocks_.size() * gpu::arena_nodes);
     return {memory_.arenas[target].data(), !std::exchange(written_[target], true)};
   }
@@ -295,19 +308,19 @@ class Gpu final : public Backend<float> {
     gpu::PassOutput out{};
     memory.next.fit(memory.now);
     out.particles = memory.next.pointers(keeps);
-    out.field = arena(next_, of_field(nodes, field));
-    if (keeps) out.velocity_old = arena(next_, of_field(old_nodes, field));
-    if (step.sub_cycled) out.stress = arena(next_, of_field(stress_nodes, field));
-    out.mixture = arena(next_, mixture_share);
+    out.field = arena(of_field(nodes, field));
+    if (keeps) out.velocity_old = arena(of_field(old_nodes, field));
+    if (step.sub_cycled) out.stress = arena(of_field(stress_nodes, field));
+    out.mixture = arena(mixture_share);
     out.sums = memory_.block_sums.data();
     if (looks) memory.output_to(out);
-    const bool plain = !looks && !keeps && !step.sub_cycled && !out.mixture.counts && !obstacles_.any();
+    const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts && !obstacles_.any();
     Materials::with(set.material, [&]<class M>() {
       const auto with = [&]<bool relaxes, bool is_plain>() {
-        launch(gpu::Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds,
-                                               input_of(world, s), out, static_cast<int>(field),
-                                               world.measures_by_volume(field)},
-               static_cast<int>(stencil_blocks_.size()));
+        launch(
+            gpu::Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds, input_of(world, s),
+                                            out, static_cast<int>(field), world.measures_by_volume(field)},
+            static_cast<int>(stencil_blocks_.size()));
       };
       if constexpr (VolumeRelaxed<M>)
         if (step.volume_relaxation > 0)
@@ -341,7 +354,10 @@ class Gpu final : public Backend<float> {
     const bool based = target == mixture_share;
     if (based) memory_.base.upload(to);
     nodes.resize(to.size());
-    if (!written_[target]) return std::fill(to.begin(), to.end(), Node<float>{});
+    if (!written_[target]) {
+      if (!based) std::fill(to.begin(), to.end(), Node<float>{});
+      return;
+    }
     launch(gpu::SumArenas{memory_.arenas[target].data(), memory_.sources.first.data(), memory_.sources.arena.data(),
                           memory_.sources.corner.data(), memory_.loads.data(), based ? memory_.base.data() : nullptr,
                           nodes.data(), bounds, unit_field(target)},
@@ -358,7 +374,10 @@ class Gpu final : public Backend<float> {
 
   void find_viscous_forces(World<float>& world, double dt) {
     for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(nodes, f)].upload(world.grid.field(f));
-    ScatterBounds bounds = assumed_bounds(world);
+    // World::node_speed is that of the step before, and no state. The mass of nodes is not known
+    // where matter came in since the last pass: what the blocks hold bounds it.
+    ScatterBounds bounds = assumed_bounds(world, 0);
+    bounds.mass = 1e20f;
     for (;;) {
       written_ = {};
       const float speed = launch_viscous(world, dt, bounds);
@@ -377,7 +396,7 @@ class Gpu final : public Backend<float> {
       Materials::with(set.material, [&]<class M>() {
         if constexpr (Viscous<M>) {
           const std::size_t field = world.field_of(set);
-          const gpu::PassOutput::Arena out = arena(next_, of_field(nodes, field));
+          const gpu::PassOutput::Arena out = arena(of_field(nodes, field));
           launch(gpu::ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
                                      input_of(world, s), out, memory_.block_speeds.data(), static_cast<int>(field)},
                  static_cast<int>(stencil_blocks_.size()));
@@ -404,6 +423,7 @@ class Gpu final : public Backend<float> {
 
   template <class K>
   void launch(const K& kernel, int blocks) {
+    if (blocks == 0) return;
     device_->launch(gpu::Kernels::number_of<K>(), &kernel, blocks);
   }
 

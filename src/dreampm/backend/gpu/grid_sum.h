@@ -6,19 +6,18 @@
 
 namespace dreampm::gpu {
 
-
 /// Adds up one field; a block of threads takes a block of the grid. On periodic axes of one block a
-/// block is more than one corner of an arena: `sources` of a block then follow each other.
+/// block is more than one corner of an arena, and comes once for each.
 struct SumArenas {
   static constexpr int threads = block_nodes;
   struct Shared {};
 
-  const NodeCounts* counts;          ///< `arena_nodes` an arena
-  const std::uint32_t* first;        ///< by block of the grid, into `arena` and `corner`, and the end
-  const std::int32_t* arena;         ///< block of particles
-  const std::int32_t* corner;        ///< which of its eight corners
-  const BlockLoad* loads;            ///< by block of particles
-  const Node<float>* base;           ///< to add to, or null
+  const NodeCounts* counts;    ///< `arena_nodes` an arena
+  const std::uint32_t* first;  ///< by block of the grid, into `arena` and `corner`, and the end
+  const std::int32_t* arena;   ///< block of particles
+  const std::int32_t* corner;  ///< which of its eight corners
+  const BlockLoad* loads;      ///< by block of particles
+  const Node<float>* base;     ///< to add to, or null
   Node<float>* to;
   ScatterBounds bounds;
   int field;  ///< 0 or 1; 2: the mixture

@@ -39,7 +39,9 @@ class HostDevice final : public Device {
   explicit HostDevice(ThreadOrder order) : order_(order) {}
   std::string about() const override { return "this machine, thread after thread"; }
   std::string isa() const override { return "host"; }
-  Memory memory() const override { return {std::numeric_limits<std::size_t>::max(), std::numeric_limits<std::size_t>::max()}; }
+  Memory memory() const override {
+    return {std::numeric_limits<std::size_t>::max(), std::numeric_limits<std::size_t>::max()};
+  }
   void* allocate(std::size_t bytes) override {
     void* const memory = std::malloc(bytes);
     if (!memory) throw std::bad_alloc();
@@ -49,7 +51,9 @@ class HostDevice final : public Device {
   void release(void* memory) noexcept override { std::free(memory); }
   void upload(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
-  void launch(int number, const void* arguments, int blocks) override { launches.of[number](arguments, blocks, order_); }
+  void launch(int number, const void* arguments, int blocks) override {
+    launches.of[number](arguments, blocks, order_);
+  }
 
  private:
   ThreadOrder order_;

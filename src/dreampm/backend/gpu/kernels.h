@@ -1,5 +1,6 @@
 // The kernels of the gpu backends, one list: a number each, by which a device launches them.
 #pragma once
+#include <cstdint>
 #include <type_traits>
 
 #include "dreampm/backend/gpu/grid_sum.h"
@@ -10,7 +11,15 @@ namespace dreampm::gpu {
 template <class... K>
 struct KernelList {
   static_assert((std::is_trivially_copyable_v<K> && ...), "a kernel is copied to the device as it stands");
+  static_assert(((sizeof(K) <= 4096 && sizeof(typename K::Shared) <= 48 * 1024) && ...),
+                "a kernel's arguments or the memory of a block are larger than CUDA has them");
   static constexpr int size = sizeof...(K);
+  /// Differs between lists whose kernels take other arguments.
+  static constexpr std::uint64_t fingerprint() {
+    std::uint64_t sum = 0;
+    ((sum = sum * 1000003 + sizeof(K) * 64 + sizeof(typename K::Shared)), ...);
+    return sum;
+  }
   /// The number of a kernel.
   template <class One>
   static constexpr int number_of() {
@@ -41,7 +50,8 @@ struct JoinLists<KernelList<A...>, KernelList<B...>, Rest...> {
 template <class M>
 struct MaterialKernels {
   using Steps = KernelList<Pass<M, false, false>, Pass<M, false, true>>;
-  using Relaxing = std::conditional_t<VolumeRelaxed<M>, KernelList<Pass<M, true, false>, Pass<M, true, true>>, KernelList<>>;
+  using Relaxing =
+      std::conditional_t<VolumeRelaxed<M>, KernelList<Pass<M, true, false>, Pass<M, true, true>>, KernelList<>>;
   using Stages = std::conditional_t<Viscous<M>, KernelList<ViscousPass<M>>, KernelList<>>;
   using Type = typename JoinLists<Steps, Relaxing, Stages>::Type;
 };

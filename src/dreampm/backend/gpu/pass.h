@@ -4,15 +4,11 @@
 #include "dreampm/backend/gpu/arena.h"
 #include "dreampm/backend/gpu/block.h"
 #include "dreampm/backend/gpu/pass_sums.h"
+#include "dreampm/backend/pass_limits.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
 
 namespace dreampm::gpu {
-
-/// Columns of state that a material may have (docs/howto/add-a-material.md).
-inline constexpr int most_state_columns = 16;
-/// Stands for the distance of a particle that does not need it exactly.
-inline constexpr float no_distance = 1e30f;
 
 /// The columns of a set in a device's memory, one number a particle each.
 struct ParticleColumns {
@@ -144,7 +140,8 @@ DM_FN std::int32_t write(int t, int b, const ArenaSums& sums, const PassOutput::
 }
 
 /// `relaxes`: whether this step relaxes the volume of liquids. `plain`: the set keeps no
-/// velocities, is alone on the grid, has no colliders about, and nobody looks at its motion.
+/// velocities, and there is no mixture, no collider and no stage of viscosity. Whether somebody
+/// looks at the motion does not decide: compilers of device code may round two kernels differently.
 template <class M, bool relaxes, bool plain>
 struct Pass {
   using Material = M;
@@ -229,12 +226,15 @@ struct Pass {
 
     for (int a = 0; a < 3; ++a) out.particles.u[a][p] = u[a];
     for (int k = 0; k < columns; ++k) out.particles.state[k][p] = state[k];
+    if constexpr (!plain)
+      if (step.transfer.keeps_velocity())
+        for (int a = 0; a < 3; ++a) out.particles.own_velocity[a][p] = s.own_velocity[a];
     const float j = volume_ratio(law, state);
     found.template add<M>(set, walls, g, s, j, response, u, pushed);
     // A position that is not finite has no nodes to go to.
     if (!found.finite) return;
     scatter<Block>(b, u, g, s, j, response, set, shared, found);
-    if constexpr (!plain) write_rare(p, g, s, j, response);
+    if (out.velocity) write_motion(p, g, s, j, response);
   }
 
   DM_FN BlockWalls<float> walls_of(int b) const {
@@ -282,10 +282,13 @@ struct Pass {
         return mixture::filled(shares, static_cast<std::size_t>(field));
       };
       if (!(M::info.liquid && in.mixture)) return find_density(s, held, NothingElse{}, g);
-      find_density(s, held, [&](int i, int j, int k) {
-        const Node<float> shares = in.mixture[node_of(b, s, i, j, k)];
-        return mixture::blocked(shares);
-      }, g);
+      find_density(
+          s, held,
+          [&](int i, int j, int k) {
+            const Node<float> shares = in.mixture[node_of(b, s, i, j, k)];
+            return mixture::blocked(shares);
+          },
+          g);
     }
   }
   template <class Held, class Taken>
@@ -349,6 +352,8 @@ struct Pass {
       auto& others = shared.arena.others;
       if (out.velocity_old.counts && set.transfer.keeps_velocity()) {
         const OldVelocityTerm<float> old(s, g.affine_moment, set);
+        // Without the stress, which may have taken from it.
+        found.scattered.speed = max(scattered_speed(old.q, old.slope, set.mass), found.scattered.speed);
         scatter_counts<Block>(stencil, old.q, old.slope, old.mass, units, others.velocity_old);
       }
       if (out.stress.counts) {
@@ -376,11 +381,8 @@ struct Pass {
                           viscosity * set.mass, mixture_units(in.loads[b], bounds), sums);
   }
 
-  DM_FN void write_rare(std::uint32_t p, const G2PResult<float>& g, const P2GTerms<float>& s, float j,
-                        const StressResponse<float>& response) const {
-    if (step.transfer.keeps_velocity())
-      for (int a = 0; a < 3; ++a) out.particles.own_velocity[a][p] = s.own_velocity[a];
-    if (!out.velocity) return;
+  DM_FN void write_motion(std::uint32_t p, const G2PResult<float>& g, const P2GTerms<float>& s, float j,
+                          const StressResponse<float>& response) const {
     const Mat3<float> gradient = affine_velocity(g.affine_moment, step.dx);
     for (int a = 0; a < 3; ++a) out.velocity[3 * std::size_t{p} + static_cast<std::size_t>(a)] = s.own_velocity[a];
     for (int k = 0; k < 9; ++k) out.gradient[9 * std::size_t{p} + static_cast<std::size_t>(k)] = gradient.m[k];

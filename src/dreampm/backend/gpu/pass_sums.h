@@ -45,7 +45,10 @@ struct ParticleSums {
       const Vec3<float> turn = cross(s.shifted, s.own_velocity);
       for (int a = 0; a < 3; ++a) shifted[a] += s.shifted[a], turned[a] += turn[a];
     }
-    const float all = u.x + u.y + u.z + j + response.sound_speed;
+    float all = u.x + u.y + u.z + j + response.sound_speed + s.q.x + s.q.y + s.q.z;
+    for (int a = 0; a < 3; ++a) all += s.slope[a].x + s.slope[a].y + s.slope[a].z;
+    const Sym3<float>& tau = response.tau;
+    all += tau.xx + tau.xy + tau.xz + tau.yy + tau.yz + tau.zz;
     finite = finite && all - all == 0;
   }
 

@@ -20,9 +20,7 @@ class SetColumns {
   std::vector<Buffer<float>> u, own_velocity, state;
 
   /// Makes all as long as those of `other`.
-  void fit(const SetColumns& other) {
-    fit(u, other.u), fit(own_velocity, other.own_velocity), fit(state, other.state);
-  }
+  void fit(const SetColumns& other) { fit(u, other.u), fit(own_velocity, other.own_velocity), fit(state, other.state); }
   /// As many columns of state as the World has.
   void fit_state(std::size_t columns) {
     while (state.size() < columns) state.emplace_back(*device_);
@@ -30,7 +28,8 @@ class SetColumns {
   }
   ParticleColumns pointers(bool own) const {
     ParticleColumns to{};
-    for (std::size_t a = 0; a < 3; ++a) to.u[a] = u[a].data(), to.own_velocity[a] = own ? own_velocity[a].data() : nullptr;
+    for (std::size_t a = 0; a < 3; ++a)
+      to.u[a] = u[a].data(), to.own_velocity[a] = own ? own_velocity[a].data() : nullptr;
     for (std::size_t c = 0; c < state.size(); ++c) to.state[c] = state[c].data();
     return to;
   }
@@ -47,20 +46,29 @@ class SetColumns {
 /// A set: its particles as they are, room for what a pass makes of them, and what it looks at.
 class SetMemory {
  public:
-  explicit SetMemory(Device& device) : now(device), next(device), block_start(device), velocity_(device), gradient_(device), energy_(device), volume_ratio_(device) {
+  explicit SetMemory(Device& device)
+      : now(device),
+        next(device),
+        block_start(device),
+        velocity_(device),
+        gradient_(device),
+        energy_(device),
+        volume_ratio_(device) {
     for (int c = 0; c < 4; ++c) distance.emplace_back(device);
   }
   SetColumns now, next;
   Buffer<std::uint32_t> block_start;
   std::vector<Buffer<float>> distance;  ///< as PassInput::distance
 
-  void swap() { std::swap(now, next); }
-  void upload_position(const ParticleSet<float>& set) {
+  /// Takes over what a pass made. `own`: whether that has velocities of their own.
+  void swap(bool own) {
+    std::swap(now, next);
+    if (!own) std::swap(now.own_velocity, next.own_velocity);
+  }
+  void upload_position(const ParticleSet<float>& set, std::size_t blocks) {
     for (std::size_t a = 0; a < 3; ++a) now.u[a].upload(set.u[a]);
     // A set without matter may have no starts yet.
-    if (set.block_start.empty())
-      return block_start.upload(std::vector<std::uint32_t>(1, 0));
-    block_start.upload(set.block_start);
+    block_start.upload(set.size() == 0 ? std::vector<std::uint32_t>(blocks + 1, 0) : set.block_start);
   }
   void upload_state(const ParticleSet<float>& set) {
     now.fit_state(set.state.size());
@@ -125,7 +133,16 @@ class SourceLists {
 class Memory {
  public:
   explicit Memory(Device& device)
-      : sources(device), stencil_blocks(device), walls(device), loads(device), clearance(device), base(device), block_sums(device), totals(device), block_speeds(device), device_(&device) {
+      : sources(device),
+        stencil_blocks(device),
+        walls(device),
+        loads(device),
+        clearance(device),
+        base(device),
+        block_sums(device),
+        totals(device),
+        block_speeds(device),
+        device_(&device) {
     for (int f = 0; f < fields; ++f) nodes.emplace_back(device), arenas.emplace_back(device);
   }
   static constexpr int fields = 7;  ///< of the grid, that particles give to
@@ -135,8 +152,8 @@ class Memory {
   Buffer<BlockWalls<float>> walls;
   Buffer<BlockLoad> loads;
   Buffer<Node<float>> clearance, base;
-  std::vector<Buffer<Node<float>>> nodes;    ///< by field
-  std::vector<Buffer<NodeCounts>> arenas;    ///< by field
+  std::vector<Buffer<Node<float>>> nodes;  ///< by field
+  std::vector<Buffer<NodeCounts>> arenas;  ///< by field
   Buffer<BlockSums> block_sums, totals;
   Buffer<float> block_speeds;
 

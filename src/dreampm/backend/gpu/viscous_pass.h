@@ -37,7 +37,8 @@ struct ViscousPass {
       const ScatterUnits units = field_units(in.loads[b], field, bounds);
       const std::uint32_t end = in.block_start[b + 1];
       for (std::uint32_t p = in.block_start[b] + static_cast<std::uint32_t>(t); p < end; p += threads) {
-        const Stencil<float> s = make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
+        const Stencil<float> s =
+            make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
         const auto found = gather<Vec3<float>, no_bends>(s, velocity_rows(s, shared.nodes));
         typename M::template State<float> state;
         for (int k = 0; k < state_columns<M>; ++k) state[k] = in.particles.state[k][p];
@@ -73,13 +74,13 @@ struct SpeedPass {
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = block.index();
-    block.each_thread(
-        [&](int t) { copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.nodes); });
+    block.each_thread([&](int t) { copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.nodes); });
     block.each_thread([&](int t) {
       float most = 0;
       const std::uint32_t end = in.block_start[b + 1];
       for (std::uint32_t p = in.block_start[b] + static_cast<std::uint32_t>(t); p < end; p += threads) {
-        const Stencil<float> s = make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
+        const Stencil<float> s =
+            make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
         const Vec3<float> v = gather_value<Vec3<float>>(s, velocity_rows(s, shared.nodes));
         most = max(dot(v, v), most);
       }

@@ -34,10 +34,12 @@ const ProjectionKernels<float>& table_of(std::string_view isa) {
 
 template <>
 const ProjectionKernels<float>& projection_kernels(std::string_view isa) {
+  if (isa == "scalar") return plain_kernels<float>();
   const KernelTables here = available_kernels();
   for (int t = here.count - 1; t >= 0; --t)
-    if (isa == "auto" || isa == here.tables[t]->isa) return table_of(here.tables[t]->isa);
-  return plain_kernels<float>();
+    if (isa == here.tables[t]->isa) return table_of(isa);
+  // The best for a backend on a device.
+  return table_of(here.tables[here.count - 1]->isa);
 }
 template <>
 const ProjectionKernels<double>& projection_kernels(std::string_view) {

@@ -181,7 +181,8 @@ void SolidSteps<R>::take(World<R>& world, const std::vector<Collider>& colliders
   // Fields and damping have acted on faces.
   w.settings.fixed_dt = w.settings.damping = 0;
   // Nothing of the last run decides the next, so that restarts are exact.
-  w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = 0;
+  w.left = 0, w.drift = world.drift, w.dt_next = w.kept_for = w.node_speed = 0;
+  w.scatter_bounds = {};
   w.colliders = colliders;
   // Velocities of bodies are those in the middle of a step.
   gained_ = static_cast<Vec3<R>>(world.gravity_over(dt) * (0.5 * dt));
@@ -311,6 +312,7 @@ typename SolidSteps<R>::Kinetic SolidSteps<R>::run(World<R>& world, const std::v
     lock(body, to.twist);
   }
   kinetic.last = this->kinetic();
+  backend_->download(solids_, motion_, MatterFields::particles);
   take_out(pushes);
   give_back(world);
   return kinetic;

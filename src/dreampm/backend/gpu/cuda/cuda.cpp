@@ -26,7 +26,8 @@ std::vector<std::string> places() {
   Dl_info own;
   if (dladdr(reinterpret_cast<const void*>(&places), &own) != 0 && own.dli_fname != nullptr) {
     const std::filesystem::path folder = std::filesystem::absolute(own.dli_fname).parent_path();
-    for (const auto& place : {folder / file_name, folder / "dreampm" / file_name, folder / "../lib/dreampm" / file_name})
+    for (const auto& place :
+         {folder / file_name, folder / "dreampm" / file_name, folder / "../lib/dreampm" / file_name})
       if (std::filesystem::exists(place)) all.push_back(place.string());
   }
   all.emplace_back(file_name);
@@ -48,8 +49,8 @@ Loaded load(const std::string& file) {
   const auto entry = reinterpret_cast<CudaLibraryEntry>(dlsym(handle, cuda_library_entry));
   if (entry == nullptr) return {nullptr, fmt::format("{} is no library of DreaMPM", file)};
   const CudaLibrary* const library = entry();
-  if (std::string(library->version) != version || library->kernels != Kernels::size)
-    return {nullptr, fmt::format("{} belongs to another build, of version {}: tools/build_cuda makes the one that fits",
+  if (std::string(library->version) != version || library->kernels != Kernels::fingerprint())
+    return {nullptr, fmt::format("{} belongs to another DreaMPM, of version {}: `make cuda` makes the one that fits",
                                  file, library->version)};
   return {library, {}};
 }
@@ -76,7 +77,10 @@ class CudaDevice final : public Device {
     const char* name = "";
     int major = 0, minor = 0;
     std::size_t bytes = 0;
-    check(call_.about(device_, &name, &major, &minor, &bytes), "asking what it is");
+    if (const char* const error = call_.about(device_, &name, &major, &minor, &bytes)) {
+      call_.close(device_);
+      fail_run("CUDA: asking what the device is failed: {}", error);
+    }
     isa_ = fmt::format("sm_{}{}", major, minor);
     about_ = fmt::format("{}, {:.1f} GiB, {}", name, static_cast<double>(bytes) / (1u << 30), isa_);
   }
@@ -113,7 +117,7 @@ class CudaDevice final : public Device {
  private:
   static double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / (1u << 20); }
   void check(const char* error, const char* what) const {
-    if (error) fail_run("{}: {} failed: {}", about_.empty() ? "CUDA" : about_, what, error);
+    if (error) fail_run("{}: {} failed: {}", about_, what, error);
   }
 
   const CudaLibrary& call_;
@@ -137,6 +141,8 @@ CudaState find_cuda() {
     const Device::Memory memory = device->memory();
     return {true, fmt::format("{}, {:.1f} GiB free", device->about(), static_cast<double>(memory.free) / (1u << 30))};
   } catch (const InputError& e) {
+    return {false, e.what()};
+  } catch (const RunError& e) {
     return {false, e.what()};
   }
 }

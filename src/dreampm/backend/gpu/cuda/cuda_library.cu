@@ -29,7 +29,14 @@ struct Opened {
 };
 Opened& opened(void* device) { return *static_cast<Opened*>(device); }
 
-const char* message(cudaError_t error) { return error == cudaSuccess ? nullptr : cudaGetErrorString(error); }
+/// Errors stay until they are asked for; the next call should not meet one that was told.
+const char* message(cudaError_t error) {
+  if (error == cudaSuccess) return nullptr;
+  cudaGetLastError();
+  return cudaGetErrorString(error);
+}
+/// The current device is each thread's own.
+cudaError_t use(void* device) { return cudaSetDevice(opened(device).number); }
 
 const char* open(int number, void** device) {
   int count = 0;
@@ -37,7 +44,7 @@ const char* open(int number, void** device) {
   if (number < 0 || number >= count) return "there is no device of that number";
   Opened one{number, nullptr};
   if (const cudaError_t error = cudaSetDevice(number)) return message(error);
-  if (const cudaError_t error = cudaStreamCreate(&one.stream)) return message(error);
+  if (const cudaError_t error = cudaStreamCreateWithFlags(&one.stream, cudaStreamNonBlocking)) return message(error);
   *device = new Opened(one);
   return nullptr;
 }
@@ -51,23 +58,38 @@ const char* about(void* device, const char** name, int* major, int* minor, std::
   *name = facts.name, *major = facts.major, *minor = facts.minor, *memory = facts.totalGlobalMem;
   return nullptr;
 }
-const char* memory(void*, std::size_t* free, std::size_t* all) { return message(cudaMemGetInfo(free, all)); }
-const char* allocate(void*, std::size_t bytes, void** memory) { return message(cudaMalloc(memory, bytes)); }
-void release(void*, void* memory) { cudaFree(memory); }
+const char* memory(void* device, std::size_t* free, std::size_t* all) {
+  if (const cudaError_t error = use(device)) return message(error);
+  return message(cudaMemGetInfo(free, all));
+}
+const char* allocate(void* device, std::size_t bytes, void** memory) {
+  if (const cudaError_t error = use(device)) return message(error);
+  return message(cudaMalloc(memory, bytes));
+}
+void release(void* device, void* memory) {
+  use(device);
+  cudaFree(memory);
+}
+/// Waits, as the host's memory may be gone after it.
 const char* upload(void* device, void* to, const void* from, std::size_t bytes) {
-  return message(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, opened(device).stream));
+  const cudaStream_t stream = opened(device).stream;
+  if (const cudaError_t error = use(device)) return message(error);
+  if (const cudaError_t error = cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream)) return message(error);
+  return message(cudaStreamSynchronize(stream));
 }
 const char* download(void* device, void* to, const void* from, std::size_t bytes) {
   const cudaStream_t stream = opened(device).stream;
+  if (const cudaError_t error = use(device)) return message(error);
   if (const cudaError_t error = cudaMemcpyAsync(to, from, bytes, cudaMemcpyDeviceToHost, stream)) return message(error);
   return message(cudaStreamSynchronize(stream));
 }
 const char* launch(void* device, int kernel, const void* arguments, int blocks) {
+  if (const cudaError_t error = use(device)) return message(error);
   launches_of(Kernels{})[kernel](arguments, blocks, opened(device).stream);
   return message(cudaGetLastError());
 }
 
-constexpr CudaLibrary library{DM_VERSION, Kernels::size, open,   close,    about, memory,
+constexpr CudaLibrary library{DM_VERSION, Kernels::fingerprint(), open,   close,    about, memory,
                               allocate,        release,       upload, download, launch};
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace dreampm::gpu {
 /// The functions of the library. Those that may fail return null, or what went wrong, in memory
 /// that stays until the next call.
 struct CudaLibrary {
-  const char* version;  ///< of DreaMPM, which has to be the same
-  int kernels;          ///< length of the list in gpu/kernels.h, which has to be the same
+  const char* version;         ///< of DreaMPM, which has to be the same
+  unsigned long long kernels;  ///< fingerprint of the list in gpu/kernels.h, which has to be the same
   const char* (*open)(int number, void** device);
   void (*close)(void* device);
   /// Name, compute capability and memory in bytes.
