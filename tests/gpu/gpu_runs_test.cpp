@@ -22,7 +22,9 @@ struct Case {
   const char* name;
   const char* rest;  ///< of the scene's text, after its head
   int frames = 6;
-  double apart = 0.03;  ///< of the kinetic energy and the number of particles
+  double apart = 0.03;     ///< of the kinetic energy and the number of particles
+  const char* space = "";  ///< more keys of `space`
+  const char* time = "";   ///< more keys of `time`
 };
 constexpr Case cases[] = {
     {"honey, whose viscosity is sub-cycled", R"(
@@ -66,26 +68,25 @@ probes:
 )",
      10, 0.06},  // a drain takes when particles are sorted, which nobody promises to be at the same step
     {"jelly in water of large steps", R"(
-solver: projection
 materials:
   water: {type: newtonian}
   jelly: {type: elastic, density: 1500, youngs_modulus: 2.0e4, poissons_ratio: 0.3}
 bodies:
   pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}
   cube: {material: jelly, shape: {box: {min: [0.06, 0.09, 0.04], max: [0.14, 0.16, 0.12]}}, velocity: [0, -1, 0]}
-)"},
+)",
+     6, 0.03, "", ", solver: projection"},
     {"snow that falls through a periodic box, in a wind", R"(
 materials: {snow: {type: snow}}
 bodies: {ball: {material: snow, shape: {sphere: {radius: 0.05}, center: [0.2, 0.12, 0.08]}, velocity: [2, -1, 0]}}
 fields: {wind: {type: wind, velocity: [3, 0, 0], coefficient: 2}}
-)"},
+)",
+     6, 0.03, ", periodic: [x]"},
 };
 
 std::string text_of(const Case& one) {
-  const bool periodic = std::string(one.name).find("periodic") != std::string::npos;
   return std::string("dreampm: 1\nname: case\nspace: {min: [0, 0, 0], max: [0.24, 0.2, 0.16], spacing: 0.0125") +
-         (periodic ? ", periodic: [x]" : "") + "}\ntime: {fps: 50, frames: " + std::to_string(one.frames) + "}\n" +
-         one.rest;
+         one.space + "}\ntime: {fps: 50, frames: " + std::to_string(one.frames) + one.time + "}\n" + one.rest;
 }
 
 /// The last row of a run's ledger, which has to close.

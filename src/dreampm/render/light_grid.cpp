@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dreampm/base/parallel.h"
+#include "dreampm/render/blur.h"
 #include "dreampm/render/color.h"
 
 namespace dreampm::trace {
@@ -26,31 +26,6 @@ Vec3f LightGrid::at(float u, float v) const {
   return mix(mix(p[0], p[1], fx), mix(p[width], p[width + 1], fx), v - static_cast<float>(y));
 }
 
-void LightGrid::blur(float sigma) {
-  const int reach = static_cast<int>(std::ceil(2.5f * sigma));
-  std::vector<float> weight;
-  float sum = 0;
-  for (int i = -reach; i <= reach; ++i)
-    sum += weight.emplace_back(std::exp(-0.5f * static_cast<float>(i * i) / (sigma * sigma)));
-  for (float& w : weight) w /= sum;
-  std::vector<Vec3f> half(values.size());
-  const auto pass = [&](const std::vector<Vec3f>& in, std::vector<Vec3f>& out, bool across) {
-    parallel_for(static_cast<std::size_t>(height), 16, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < width; ++x) {
-        Vec3f c;
-        for (int i = -reach; i <= reach; ++i) {
-          const int xx = across ? std::clamp(x + i, 0, width - 1) : x,
-                    yy = across ? y : std::clamp(y + i, 0, height - 1);
-          c += in[static_cast<std::size_t>(yy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(xx)] *
-               weight[static_cast<std::size_t>(i + reach)];
-        }
-        out[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = c;
-      }
-    });
-  };
-  pass(values, half, true);
-  pass(half, values, false);
-}
+void LightGrid::blur(float sigma) { trace::blur(values, width, height, sigma); }
 
 }  // namespace dreampm::trace

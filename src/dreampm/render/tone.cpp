@@ -4,6 +4,7 @@
 
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/srgb.h"
+#include "dreampm/render/blur.h"
 #include "dreampm/render/color.h"
 
 namespace dreampm::trace {
@@ -23,37 +24,6 @@ float transfer(float x) { return srgb_from_linear(std::clamp(x, 0.0f, 1.0f)); }
 
 /// The width of the halo round bright pixels [pixels].
 float bloom_width(int height) { return std::clamp(static_cast<float>(height) / 90, 0.5f, 12.0f); }
-int reach_of(float sigma) { return static_cast<int>(std::ceil(2.5f * sigma)); }
-
-/// A separable Gaussian, edges repeated.
-void blur(std::vector<Vec3f>& pixels, int width, int height, float sigma) {
-  const int reach = reach_of(sigma);
-  std::vector<float> weight(static_cast<std::size_t>(reach) + 1);
-  float sum = 0;
-  for (int i = 0; i <= reach; ++i) {
-    const float x = static_cast<float>(i) / sigma;
-    sum += (i > 0 ? 2 : 1) * (weight[static_cast<std::size_t>(i)] = std::exp(-0.5f * x * x));
-  }
-  for (float& w : weight) w /= sum;
-  std::vector<Vec3f> half(pixels.size());
-  const auto pass = [&](const std::vector<Vec3f>& in, std::vector<Vec3f>& out, bool across) {
-    parallel_for(static_cast<std::size_t>(height), 8, [&](std::size_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < width; ++x) {
-        Vec3f c;
-        for (int i = -reach; i <= reach; ++i) {
-          const int xx = across ? std::clamp(x + i, 0, width - 1) : x,
-                    yy = across ? y : std::clamp(y + i, 0, height - 1);
-          c += in[static_cast<std::size_t>(yy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(xx)] *
-               weight[static_cast<std::size_t>(std::abs(i))];
-        }
-        out[row * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] = c;
-      }
-    });
-  };
-  pass(pixels, half, true);
-  pass(half, pixels, false);
-}
 
 }  // namespace
 
@@ -74,7 +44,7 @@ Vec3f as_shown(const Vec3f& c) {
   return {one(c.x), one(c.y), one(c.z)};
 }
 
-int bloom_reach(int height) { return reach_of(bloom_width(height)); }
+int bloom_reach(int height) { return blur_reach(bloom_width(height)); }
 
 namespace {
 

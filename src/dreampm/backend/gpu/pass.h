@@ -204,7 +204,10 @@ struct Pass {
         if (t < half) shared.sums[t].add(shared.sums[t + half]);
       });
     block.each_thread([&](int t) {
-      if (t == 0) out.sums[b] = BlockSums::of(shared.sums[0]);
+      if (t != 0) return;
+      BlockSums sum = BlockSums::none();
+      sum.add(shared.sums[0]);
+      out.sums[b] = sum;
     });
   }
 
@@ -230,7 +233,7 @@ struct Pass {
       if (step.transfer.keeps_velocity())
         for (int a = 0; a < 3; ++a) out.particles.own_velocity[a][p] = s.own_velocity[a];
     const float j = volume_ratio(law, state);
-    found.template add<M>(set, walls, g, s, j, response, u, pushed);
+    found.template add_particle<M>(set, walls, g, s, j, response, u, pushed);
     // A position that is not finite has no nodes to go to.
     if (!found.finite) return;
     scatter<Block>(b, u, g, s, j, response, set, shared, found);

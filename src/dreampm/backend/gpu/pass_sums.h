@@ -7,26 +7,26 @@
 
 namespace dreampm::gpu {
 
-/// Of the particles of one thread, and of a block's threads: a few hundred, of which floats lose
-/// nothing that a ledger would see. Without constructors, as it lies in the memory of a block.
-struct ParticleSums {
+/// Sums in numbers of type N. Without constructors, as they lie in the memory of a block.
+template <class N>
+struct PassSums {
   float wave_speed, viscosity, j_min, j_max;
-  float kinetic, viscous, plastic, relaxed;  ///< by mass [J/kg], and by volume at rest [J/m^3]
-  float swollen;                             ///< by volume at rest [1]
-  float shifted[3], turned[3];               ///< cells, and cells m/s
+  N kinetic, viscous, plastic, relaxed;  ///< by mass [J/kg], and by volume at rest [J/m^3]
+  N swollen;                             ///< by volume at rest [1]
+  N shifted[3], turned[3];               ///< cells, and cells m/s
   ScatterBounds scattered;
   std::uint32_t pushed;
   bool finite;
 
-  static DM_FN ParticleSums none() {
+  static DM_FN PassSums none() {
     return {0, 0, 1e30f, -1e30f, 0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, true};
   }
 
   /// Adds one particle, now at `u`.
   template <class M>
-  DM_FN void add(const SetStep<float>& step, const BlockWalls<float>& walls, const G2PResult<float>& g,
-                 const P2GTerms<float>& s, float j, const StressResponse<float>& response, const Vec3<float>& u,
-                 bool was_pushed) {
+  DM_FN void add_particle(const SetStep<float>& step, const BlockWalls<float>& walls, const G2PResult<float>& g,
+                          const P2GTerms<float>& s, float j, const StressResponse<float>& response,
+                          const Vec3<float>& u, bool was_pushed) {
     wave_speed = max(response.sound_speed, wave_speed);
     viscosity = max(response.kinematic_viscosity, viscosity);
     j_min = min(j, j_min), j_max = max(j, j_max);
@@ -52,7 +52,8 @@ struct ParticleSums {
     finite = finite && all - all == 0;
   }
 
-  DM_FN void add(const ParticleSums& b) {
+  template <class Other>
+  DM_FN void add(const PassSums<Other>& b) {
     wave_speed = max(wave_speed, b.wave_speed), viscosity = max(viscosity, b.viscosity);
     j_min = min(j_min, b.j_min), j_max = max(j_max, b.j_max);
     kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed, swollen += b.swollen;
@@ -63,42 +64,11 @@ struct ParticleSums {
   }
 };
 
+/// Of the particles of one thread, and of a block's threads: a few hundred, of which floats lose
+/// nothing that a ledger would see.
+using ParticleSums = PassSums<float>;
 /// Of a block of particles, and of all of a set.
-struct BlockSums {
-  float wave_speed, viscosity, j_min, j_max;
-  double kinetic, viscous, plastic, relaxed, swollen;
-  double shifted[3], turned[3];
-  ScatterBounds scattered;
-  std::uint32_t pushed;
-  bool finite;
-
-  static DM_FN BlockSums none() { return of(ParticleSums::none()); }
-  static DM_FN BlockSums of(const ParticleSums& s) {
-    return {s.wave_speed,
-            s.viscosity,
-            s.j_min,
-            s.j_max,
-            s.kinetic,
-            s.viscous,
-            s.plastic,
-            s.relaxed,
-            s.swollen,
-            {s.shifted[0], s.shifted[1], s.shifted[2]},
-            {s.turned[0], s.turned[1], s.turned[2]},
-            s.scattered,
-            s.pushed,
-            s.finite};
-  }
-  DM_FN void add(const BlockSums& b) {
-    wave_speed = max(wave_speed, b.wave_speed), viscosity = max(viscosity, b.viscosity);
-    j_min = min(j_min, b.j_min), j_max = max(j_max, b.j_max);
-    kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed, swollen += b.swollen;
-    for (int a = 0; a < 3; ++a) shifted[a] += b.shifted[a], turned[a] += b.turned[a];
-    scattered = largest(scattered, b.scattered);
-    pushed += b.pushed;
-    finite = finite && b.finite;
-  }
-};
+using BlockSums = PassSums<double>;
 
 /// Adds up the sums of `count` blocks, in an order that depends on nothing else.
 struct AddUp {
