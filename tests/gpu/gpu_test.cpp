@@ -134,21 +134,28 @@ TEST(Gpu, AParticleAloneKeepsItsMass) {
   }
 }
 
+/// A mixed world after some steps, with all of its matter.
+World<float> mixed_after(std::string_view name, Backend<float>& backend, int steps) {
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = mixed_world<float>(name, seeds);
+  begin(w, backend, seeds);
+  advance(w, backend, steps);
+  Motion<float> none;
+  backend.download(w, none, MatterFields::all);
+  return w;
+}
+
 // A pass that gives more than was assumed is done again, with the units of one that assumed it.
 TEST(Gpu, WhatWasAssumedTooSmallChangesNoBit) {
-  std::vector<std::vector<ParticleSeed>> seeds;
-  World<float> w = mixed_world<float>("viscoplastic", seeds);
   const auto gpu = host_gpu();
-  begin(w, *gpu, seeds);
-  advance(w, *gpu, 3);
-  Motion<float> none;
-  gpu->download(w, none, MatterFields::all);
+  const World<float> w = mixed_after("viscoplastic", *gpu, 3);
   const auto next = [&](const std::array<double, 4>& bounds) {
     World<float> copy = w;
     copy.scatter_bounds = bounds;
     const auto fresh = host_gpu();
     fresh->attach(copy);
     advance(copy, *fresh, 1);
+    Motion<float> none;
     fresh->download(copy, none, MatterFields::all);
     return copy;
   };
@@ -163,30 +170,21 @@ TEST(Gpu, WhatWasAssumedTooSmallChangesNoBit) {
 
 // An attached world that stopped being numbers is no world: the step says so.
 TEST(Gpu, StressThatIsNoNumberIsFound) {
-  std::vector<std::vector<ParticleSeed>> seeds;
-  World<float> w = mixed_world<float>("snow", seeds);
   const auto gpu = host_gpu();
-  begin(w, *gpu, seeds);
-  advance(w, *gpu, 2);
-  Motion<float> none;
-  gpu->download(w, none, MatterFields::all);
+  World<float> w = mixed_after("snow", *gpu, 2);
   w.sets[0].state[0][5] = std::numeric_limits<float>::infinity();
-  gpu->upload(w, none, MatterFields::particles);
+  gpu->upload(w, {}, MatterFields::particles);
   EXPECT_THROW(advance(w, *gpu, 2), NumericalFailure);
 }
 
 TEST(Gpu, ACopyWithAFreshBackendGoesTheSameWay) {
-  std::vector<std::vector<ParticleSeed>> seeds;
-  World<float> w = mixed_world<float>("viscoplastic", seeds);
   const auto first = host_gpu(), second = host_gpu();
-  begin(w, *first, seeds);
-  advance(w, *first, 70);
+  World<float> w = mixed_after("viscoplastic", *first, 70);
   EXPECT_GT(w.drift, 0);  // between sorts: the copy must not need one
-  Motion<float> none;
-  first->download(w, none, MatterFields::all);
   World<float> copy = w;
   second->attach(copy);
   advance(w, *first, 40), advance(copy, *second, 40);
+  Motion<float> none;
   first->download(w, none, MatterFields::all), second->download(copy, none, MatterFields::all);
   EXPECT_EQ(state_hash(copy), state_hash(w));
 }

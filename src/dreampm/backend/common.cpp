@@ -5,6 +5,7 @@
 
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/base/thread_team.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/state/resize_for_overwrite.h"
 #include "dreampm/state/volume_relaxation.h"
@@ -120,6 +121,16 @@ void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R
 }
 
 template <class R>
+void begin_pass(World<R>& world, const Obstacles& obstacles, const MirrorWalls<R>& images, GridFields<R>& next,
+                double dt) {
+  fit_grid(world, next);
+  parallel_region([&](ThreadTeam& team) {
+    team.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles, next, b); });
+    images.add_image_mass(team, world, dt);
+  });
+}
+
+template <class R>
 void swap_fields(GridFields<R>& a, GridFields<R>& b) {
   visit_nodes(a, b, [](const auto&, auto& its, auto& other) { its.swap(other); });
 }
@@ -162,13 +173,14 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
   return stats;
 }
 
-#define DM_INSTANTIATE(R)                                                                    \
-  template void find_stencil_blocks(const World<R>&, std::vector<StencilBlocks>&);           \
-  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                   \
-  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);      \
-  template void fit_grid(const World<R>&, GridFields<R>&);                                   \
-  template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t); \
-  template void swap_fields(GridFields<R>&, GridFields<R>&);                                 \
+#define DM_INSTANTIATE(R)                                                                               \
+  template void find_stencil_blocks(const World<R>&, std::vector<StencilBlocks>&);                      \
+  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                              \
+  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);                 \
+  template void fit_grid(const World<R>&, GridFields<R>&);                                              \
+  template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t);            \
+  template void begin_pass(World<R>&, const Obstacles&, const MirrorWalls<R>&, GridFields<R>&, double); \
+  template void swap_fields(GridFields<R>&, GridFields<R>&);                                            \
   template PassStats scatter_seeds(World<R>&, std::size_t, std::span<const ParticleSeed>, const Obstacles&);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)

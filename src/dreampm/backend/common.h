@@ -8,6 +8,7 @@
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/mirror_walls.h"
 #include "dreampm/backend/node_loops.h"
+#include "dreampm/backend/pass_limits.h"
 #include "dreampm/contact/obstacles.h"
 #include "dreampm/physics/particle.h"
 #include "dreampm/state/neighbors.h"
@@ -50,6 +51,14 @@ class ThinWalls {
     const ColliderDistance d = thin->view.nearest_exposed(place - static_cast<Vec3d>(side * block_width), reach);
     return Node<R>{static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
                    static_cast<R>(d.distance)};
+  }
+  /// Fills columns for the particles of a block, [begin, end): at(u), or `no_distance` in the last.
+  template <class Columns>
+  void fill(const std::array<const float*, 3>& u, std::size_t begin, std::size_t end, Columns& to) const {
+    for (std::size_t p = begin; p < end; ++p) {
+      const Node<float> d = at(Vec3<float>{u[0][p], u[1][p], u[2][p]}).value_or(Node<float>{0, 0, 0, no_distance});
+      to[0][p] = d.x, to[1][p] = d.y, to[2][p] = d.z, to[3][p] = d.m;
+    }
   }
 
  private:
@@ -115,6 +124,13 @@ void fit_grid(const World<R>& world, GridFields<R>& next);
 /// Zeroes one of its blocks, and fills in the colliders' share of the mixture.
 template <class R>
 void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R>& next, std::size_t block);
+
+/// Empties the grid of the step to come, but for the colliders' share of the mixture, and adds the
+/// images of masses behind walls to the world's: what comes before a pass that zeroes no block by
+/// itself.
+template <class R>
+void begin_pass(World<R>& world, const Obstacles& obstacles, const MirrorWalls<R>& images, GridFields<R>& next,
+                double dt);
 
 /// Exchanges all fields of two grids, not their block lists.
 template <class R>

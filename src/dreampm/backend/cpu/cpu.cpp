@@ -393,12 +393,7 @@ class Cpu final : public Backend<float> {
 
   /// Fills the columns of a pass over one block.
   static void find_distances(const ThinWalls& thin, SetPass& set, BlockPass& pass) {
-    for (std::size_t p = pass.begin; p < pass.end; ++p) {
-      const Node<float> d =
-          thin.at(Vec3<float>{pass.u[0][p], pass.u[1][p], pass.u[2][p]}).value_or(Node<float>{0, 0, 0, no_distance});
-      const float numbers[4] = {d.x, d.y, d.z, d.m};
-      for (std::size_t c = 0; c < 4; ++c) set.distance[c][p] = numbers[c];
-    }
+    thin.fill({pass.u[0], pass.u[1], pass.u[2]}, pass.begin, pass.end, set.distance);
     for (std::size_t c = 0; c < 4; ++c) pass.distance[c] = set.distance[c].data();
   }
   /// Measures the extent of a block's particles, and finds their lane groups.

@@ -76,6 +76,12 @@ DM_FN bool within(const ScatterBounds& found, const ScatterBounds& assumed) {
          !(found.volume_ratio > assumed.volume_ratio) && !(found.viscosity > assumed.viscosity);
 }
 
+/// As much more than the last pass did a pass may give to its nodes before it has to be done again.
+DM_FN ScatterBounds widened(const ScatterBounds& b) {
+  constexpr float margin = 1.5f;
+  return {margin * b.speed, margin * b.mass, margin * b.volume_ratio, margin * b.viscosity};
+}
+
 /// Units of momentum and mass of a field. That of mass fits all that the block holds: so the most
 /// that came to a node is known, and with it whether momentum fitted.
 DM_FN ScatterUnits field_units(const BlockLoad& load, int field, const ScatterBounds& bounds) {

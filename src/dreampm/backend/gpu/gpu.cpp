@@ -31,12 +31,6 @@ Nodes<float>& host_field(GridFields<float>& grid, std::size_t target) {
   return target < old_nodes ? grid.field(f) : target < stress_nodes ? grid.velocity_old[f] : grid.stress[f];
 }
 
-/// As much more than the last pass did a pass may give to its nodes before it has to be done again.
-ScatterBounds widened(const ScatterBounds& b) {
-  constexpr float margin = 1.5f;
-  return {margin * b.speed, margin * b.mass, margin * b.volume_ratio, margin * b.viscosity};
-}
-
 class Gpu final : public Backend<float> {
  public:
   Gpu(std::string_view name, std::unique_ptr<gpu::Device> device)
@@ -85,11 +79,7 @@ class Gpu final : public Backend<float> {
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
-    fit_grid(world, next_);
-    parallel_region([&](ThreadTeam& team) {
-      team.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-      update_.images().add_image_mass(team, world, dt);
-    });
+    begin_pass(world, obstacles_, update_.images(), next_, dt);
     upload_nodes(world);
     if (obstacles_.any_thin()) upload_distances(world);
     ScatterBounds bounds = assumed_bounds(world, world.node_speed);
@@ -101,7 +91,7 @@ class Gpu final : public Backend<float> {
         world.scatter_bounds = {found.speed, found.mass, found.volume_ratio, found.viscosity};
         break;
       }
-      bounds = gpu::largest(bounds, widened(found));
+      bounds = gpu::largest(bounds, gpu::widened(found));
     }
     for (std::size_t t = 0; t < targets; ++t) sum_arenas(t, bounds);
     for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].swap(world.sets[s].transfer.keeps_velocity());
@@ -177,33 +167,11 @@ class Gpu final : public Backend<float> {
     update_.prepare(world, obstacles_);
     const std::size_t blocks = world.particle_blocks.size();
     std::vector<gpu::BlockLoad> loads(blocks);
-    for (std::size_t b = 0; b < blocks; ++b) loads[b] = load_of(world, b);
+    for (std::size_t b = 0; b < blocks; ++b) loads[b] = gpu::load_of(world, b);
     memory_.loads.upload(loads);
-    memory_.stencil_blocks.upload(flat(stencil_blocks_));
+    memory_.stencil_blocks.upload(gpu::flat(stencil_blocks_));
     memory_.sources.upload(stencil_blocks_, world.grid.blocks.size());
     upload_obstacles(world);
-  }
-  static gpu::BlockLoad load_of(const World<float>& world, std::size_t block) {
-    std::array<double, 2> mass{}, one_mass{};
-    double volume = 0, one_volume = 0;
-    for (const ParticleSet<float>& set : world.sets) {
-      if (set.size() == 0) continue;
-      const double count = set.block_start[block + 1] - set.block_start[block];
-      const double cells = set.rest_volume / (world.dx * world.dx * world.dx);
-      const std::size_t field = world.field_of(set);
-      mass[field] += gpu::largest_weight * count * set.mass;
-      volume += gpu::largest_weight * count * cells;
-      one_mass[field] = std::max(one_mass[field], set.mass), one_volume = std::max(one_volume, cells);
-    }
-    for (std::size_t f = 0; f < 2; ++f) mass[f] = std::max(mass[f], one_mass[f]);
-    volume = std::max(volume, one_volume);
-    return {{static_cast<float>(mass[0]), static_cast<float>(mass[1])}, static_cast<float>(volume)};
-  }
-  static std::vector<std::int32_t> flat(const std::vector<StencilBlocks>& all) {
-    std::vector<std::int32_t> numbers;
-    numbers.reserve(8 * all.size());
-    for (const StencilBlocks& blocks : all) numbers.insert(numbers.end(), blocks.begin(), blocks.end());
-    return numbers;
   }
   void upload_obstacles(const World<float>& world) {
     std::vector<BlockWalls<float>> walls(world.particle_blocks.size());
@@ -229,10 +197,9 @@ class Gpu final : public Backend<float> {
       if (set.size() > 0)
         parallel_for(world.particle_blocks.size(), 8, [&](std::size_t b) {
           const ThinWalls thin(obstacles_, stencil_blocks_[b]);
-          if (!thin.any()) return;
-          for (std::size_t p = set.block_start[b]; p < set.block_start[b + 1]; ++p)
-            if (const auto d = thin.at(Vec3<float>{set.u[0][p], set.u[1][p], set.u[2][p]}))
-              distance[0][p] = d->x, distance[1][p] = d->y, distance[2][p] = d->z, distance[3][p] = d->m;
+          if (thin.any())
+            thin.fill({set.u[0].data(), set.u[1].data(), set.u[2].data()}, set.block_start[b], set.block_start[b + 1],
+                      distance);
         });
       for (std::size_t c = 0; c < 4; ++c) memory_.sets[s].distance[c].upload(distance[c]);
     }
@@ -264,9 +231,9 @@ class Gpu final : public Backend<float> {
     const auto& [scattered, mass, ratio, viscosity] = world.scatter_bounds;
     double one = 0;  // no less than a particle's whole
     for (const ParticleSet<float>& set : world.sets) one = std::max(one, set.mass);
-    return widened({static_cast<float>(std::max(scattered, speed)),
-                    static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20), static_cast<float>(std::max(ratio, 2.0)),
-                    static_cast<float>(std::max(viscosity, world.viscosity))});
+    return gpu::widened(
+        {static_cast<float>(std::max(scattered, speed)), static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20),
+         static_cast<float>(std::max(ratio, 2.0)), static_cast<float>(std::max(viscosity, world.viscosity))});
   }
 
   /// Takes a set's turn to write to a target's arenas.
@@ -292,7 +259,7 @@ class Gpu final : public Backend<float> {
     if (blocks > 0) memory_.totals.download(sums);
     ScatterBounds found{};
     for (std::size_t s = 0; s < sums.size(); ++s) {
-      total.add(stats_of(world, world.sets[s], sums[s]));
+      total.add(gpu::stats_of(world, world.sets[s], sums[s]));
       found = gpu::largest(found, sums[s].scattered);
     }
     return found;
@@ -327,23 +294,6 @@ class Gpu final : public Backend<float> {
           return plain ? with.template operator()<true, true>() : with.template operator()<true, false>();
       plain ? with.template operator()<false, true>() : with.template operator()<false, false>();
     });
-  }
-
-  static PassStats stats_of(const World<float>& world, const ParticleSet<float>& set, const gpu::BlockSums& sums) {
-    PassStats stats;
-    stats.wave_speed = sums.wave_speed, stats.viscosity = sums.viscosity;
-    stats.j_min = sums.j_min, stats.j_max = sums.j_max;
-    stats.pushed = sums.pushed;
-    stats.finite = sums.finite;
-    const double kinetic = sums.kinetic * set.mass, volume = set.rest_volume;
-    stats.energy = {kinetic, set.transfer.keeps_velocity() ? kinetic : 0, sums.viscous * volume, sums.plastic * volume,
-                    sums.relaxed * volume};
-    stats.swollen = sums.swollen * volume;
-    for (int a = 0; a < 3; ++a) {
-      stats.shifted[a] = sums.shifted[a] * set.mass * world.dx;
-      stats.turned[a] = sums.turned[a] * set.mass * world.dx;
-    }
-    return stats;
   }
 
   /// Brings what the arenas of a target hold to the grid of the step to come.
@@ -382,7 +332,7 @@ class Gpu final : public Backend<float> {
       written_ = {};
       const float speed = launch_viscous(world, dt, bounds);
       if (!(speed > bounds.speed)) break;
-      bounds = gpu::largest(bounds, widened({speed, 0, 0, 0}));
+      bounds = gpu::largest(bounds, gpu::widened({speed, 0, 0, 0}));
     }
     for (std::size_t f = 0; f < 2; ++f) sum_arenas(of_field(nodes, f), bounds);
   }

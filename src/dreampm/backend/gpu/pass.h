@@ -5,6 +5,7 @@
 #include "dreampm/backend/gpu/block.h"
 #include "dreampm/backend/gpu/pass_sums.h"
 #include "dreampm/backend/pass_limits.h"
+#include "dreampm/physics/divergence.h"
 #include "dreampm/physics/materials.h"
 #include "dreampm/physics/particle.h"
 
@@ -260,9 +261,7 @@ struct Pass {
     const auto found = gather<Vec3<float>, M::info.liquid ? all_bends : no_bends>(s, velocity_rows(s, nodes));
     g.v = found.value;
     for (int a = 0; a < 3; ++a) g.affine_moment[a] = found.first_moment[a];
-    if constexpr (M::info.liquid)
-      g.affine_excess = found.bend[0].x * affine_excess(s.t[0]) + found.bend[1].y * affine_excess(s.t[1]) +
-                        found.bend[2].z * affine_excess(s.t[2]);
+    if constexpr (M::info.liquid) g.affine_excess = divergence_excess(found, s);
     if constexpr (measures<M>(relaxes ? 1.0f : 0.0f)) gather_density(b, s, nodes, g);
     if constexpr (!plain) gather_rare(b, p, s, walls, g);
   }

@@ -1,5 +1,6 @@
 // The arrays of a World in a device's memory.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -7,9 +8,53 @@
 #include "dreampm/backend/gpu/device.h"
 #include "dreampm/backend/gpu/kernels.h"
 #include "dreampm/backend/motion.h"
+#include "dreampm/backend/pass_stats.h"
 #include "dreampm/state/neighbors.h"
 
 namespace dreampm::gpu {
+
+/// What the matter of a block of particles weighs and takes.
+inline BlockLoad load_of(const World<float>& world, std::size_t block) {
+  std::array<double, 2> mass{}, one_mass{};
+  double volume = 0, one_volume = 0;
+  for (const ParticleSet<float>& set : world.sets) {
+    if (set.size() == 0) continue;
+    const double count = set.block_start[block + 1] - set.block_start[block];
+    const double cells = set.rest_volume / (world.dx * world.dx * world.dx);
+    const std::size_t field = world.field_of(set);
+    mass[field] += largest_weight * count * set.mass;
+    volume += largest_weight * count * cells;
+    one_mass[field] = std::max(one_mass[field], set.mass), one_volume = std::max(one_volume, cells);
+  }
+  for (std::size_t f = 0; f < 2; ++f) mass[f] = std::max(mass[f], one_mass[f]);
+  volume = std::max(volume, one_volume);
+  return {{static_cast<float>(mass[0]), static_cast<float>(mass[1])}, static_cast<float>(volume)};
+}
+/// The same numbers, eight a block.
+inline std::vector<std::int32_t> flat(const std::vector<StencilBlocks>& all) {
+  std::vector<std::int32_t> numbers;
+  numbers.reserve(8 * all.size());
+  for (const StencilBlocks& blocks : all) numbers.insert(numbers.end(), blocks.begin(), blocks.end());
+  return numbers;
+}
+
+/// What a pass reports of a set.
+inline PassStats stats_of(const World<float>& world, const ParticleSet<float>& set, const BlockSums& sums) {
+  PassStats stats;
+  stats.wave_speed = sums.wave_speed, stats.viscosity = sums.viscosity;
+  stats.j_min = sums.j_min, stats.j_max = sums.j_max;
+  stats.pushed = sums.pushed;
+  stats.finite = sums.finite;
+  const double kinetic = sums.kinetic * set.mass, volume = set.rest_volume;
+  stats.energy = {kinetic, set.transfer.keeps_velocity() ? kinetic : 0, sums.viscous * volume, sums.plastic * volume,
+                  sums.relaxed * volume};
+  stats.swollen = sums.swollen * volume;
+  for (int a = 0; a < 3; ++a) {
+    stats.shifted[a] = sums.shifted[a] * set.mass * world.dx;
+    stats.turned[a] = sums.turned[a] * set.mass * world.dx;
+  }
+  return stats;
+}
 
 /// The columns of the particles of a set.
 class SetColumns {

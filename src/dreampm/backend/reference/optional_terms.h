@@ -8,14 +8,6 @@
 
 namespace dreampm::reference {
 
-/// Returns the excess of tr C over the divergence of the field that moves the particles [m/s
-/// cells]; for liquids.
-template <class R>
-R divergence_excess(const Moments<Node<R>>& found, const Stencil<R>& s) {
-  return found.bend[0].x * affine_excess(s.t[0]) + found.bend[1].y * affine_excess(s.t[1]) +
-         found.bend[2].z * affine_excess(s.t[2]);
-}
-
 /// True if sets share nodes with others, or with colliders.
 template <class R>
 bool has_mixture(const SetContext<R>& context) {

@@ -13,6 +13,7 @@
 
 #include "dreampm/backend/reference/optional_terms.h"
 #include "dreampm/backend/reference/pass_sums.h"
+#include "dreampm/physics/divergence.h"
 
 namespace dreampm::reference {
 

@@ -42,7 +42,7 @@ class Reference final : public Backend<R> {
   GridStats grid_update(World<R>& world, double dt) override { return update_(world, around_.obstacles, dt); }
 
   PassStats g2p2g(World<R>& world, double dt, double dt_next, Motion<R>* motion) override {
-    clear_next(world, dt);
+    begin_pass(world, around_.obstacles, update_.images(), next_, dt);
     if (motion) motion->sets.assign(world.sets.size(), {});
     PassStats sums;
     for (std::size_t s = 0; s < world.sets.size(); ++s)
@@ -69,16 +69,6 @@ class Reference final : public Backend<R> {
   void refresh(const World<R>& world) {
     around_.prepare(world);
     update_.prepare(world, around_.obstacles);
-  }
-
-  /// Empties the grid of the step to come, and adds the images of masses behind walls to the
-  /// world's.
-  void clear_next(World<R>& world, double dt) {
-    fit_grid(world, next_);
-    parallel_region([&](ThreadTeam& team) {
-      team.loop(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, around_.obstacles, next_, b); });
-      update_.images().add_image_mass(team, world, dt);
-    });
   }
 
   void find_viscous_forces(World<R>& world, double dt) {

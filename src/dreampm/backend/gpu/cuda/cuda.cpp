@@ -131,7 +131,8 @@ std::unique_ptr<Device> make_cuda_device(int number) {
   const Loaded& cuda = loaded();
   if (!cuda.library) fail_input("no CUDA: {} (docs/guide/gpu.md says how to get it)", cuda.why);
   void* device = nullptr;
-  if (const char* const error = cuda.library->open(number, &device)) fail_input("CUDA device {}: {}", number, error);
+  if (const char* const error = cuda.library->open(number, &device))
+    fail_input("CUDA device {}: {} (docs/guide/gpu.md says what it needs)", number, error);
   return std::make_unique<CudaDevice>(*cuda.library, device);
 }
 
