@@ -31,6 +31,21 @@ constexpr Case cases[] = {
 materials: {honey: {type: newtonian, preset: honey, bulk_modulus: 1.0e5}}
 bodies: {drop: {material: honey, shape: {sphere: {radius: 0.05}, center: [0.12, 0.1, 0.08]}, velocity: [0, -1, 0]}}
 )"},
+    {"snow and sand between walls of all kinds, damped", R"(
+materials: {snow: {type: snow}, sand: {type: sand, youngs_modulus: 1.0e5}}
+bodies:
+  ball: {material: snow, shape: {sphere: {radius: 0.05}, center: [0.08, 0.08, 0.06]}, velocity: [-1, -1, -0.5]}
+  heap: {material: sand, shape: {box: {min: [0.13, 0, 0.04], max: [0.22, 0.08, 0.14]}}, velocity: [1, 0, 0]}
+)",
+     6, 0.03,
+     ", walls: {x_min: {type: stick}, x_max: {friction: 0.4}, y_min: {type: slip, friction: 0.2}, z_min: {type: slip}, "
+     "z_max: {type: open}}",
+     ", damping: 2"},
+    {"water that keeps velocities along walls with boundary layers", R"(
+materials: {water: {type: newtonian, viscosity: 0.2, transfer: flip, flip_memory: 0.03}}
+bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.1, 0.12, 0.16]}}}}
+)",
+     6, 0.03, ", walls: {all: {type: separate, skin_friction: true}, x_max: {type: stick}}"},
     {"two liquids of two densities", R"(
 materials: {oil: {type: newtonian, density: 800}, water: {type: newtonian, density: 1000}}
 bodies:

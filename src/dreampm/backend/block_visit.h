@@ -23,16 +23,6 @@ BoxWalls<R> box_walls(const World<R>& world, std::size_t field) {
   return w;
 }
 
-template <class R>
-Vec3<R> velocity(const Node<R>& node) {
-  return {node.x, node.y, node.z};
-}
-/// Leaves the mass alone: other blocks may be reading it.
-template <class R>
-void set_velocity(Node<R>& node, const Vec3<R>& v) {
-  node.x = v.x, node.y = v.y, node.z = v.z;
-}
-
 /// The results of the visit of one block.
 struct BlockStats {
   enum Source : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
@@ -55,38 +45,32 @@ struct BlockStats {
   }
 };
 
-/// Constants of all nodes in one step.
+/// The constants of a step. `of_step`: the part of viscous contact that is left to this visit; 1 if
+/// there are no stages, 0 if this is what comes before them.
 template <class R>
-struct NodeStep {
+NodeConstants<R> node_constants(const World<R>& w, double dt, double of_step) {
+  NodeConstants<R> step{{box_walls(w, 0), box_walls(w, 1)},
+                        static_cast<Vec3<R>>(w.viscous_stages == 0 ? w.gravity_over(dt) * dt : Vec3d{}),
+                        static_cast<R>(std::exp(-w.settings.damping * dt)),
+                        static_cast<R>(dt / (w.dx * w.dx)),
+                        static_cast<R>(w.dx),
+                        static_cast<R>(w.dx / dt),
+                        of_step > 0 && w.has_skin_friction() && !w.grid.mixture.empty(),
+                        {},
+                        static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx)),
+                        static_cast<R>(of_step)};
+  for (std::size_t side = 0; side < 6; ++side) step.slows[side] = w.walls[side].skin_friction;
+  return step;
+}
+
+/// What all nodes see in one step.
+template <class R>
+struct NodeStep : NodeConstants<R> {
   const World<R>& world;
   FieldSteps<R> fields;
-  BoxWalls<R> walls[2];  ///< by field
-  Vec3<R> kick;
-  R keep;       ///< of the velocity, by damping
-  R diffusion;  ///< dt/dx^2 [s/m^2]
-  R dx;         ///< m
-  R per_dt;     ///< dx/dt [m/s]
-  bool skin;    ///< true if a wall slows liquids by its boundary layer
-  // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces;
-  // what is left of it acts on its own, for this part of the step. It is rare: a node with next to
-  // nothing of a solid, a liquid that solves its own viscosity implicitly.
-  R staged_drag, part;
 
-  /// `of_step`: the part; 1 if there are no stages, 0 if this is what comes before them.
   NodeStep(const World<R>& w, double dt, double of_step)
-      : world(w),
-        fields(w, dt),
-        walls{box_walls(w, 0), box_walls(w, 1)},
-        kick(static_cast<Vec3<R>>(w.viscous_stages == 0 ? w.gravity_over(dt) * dt : Vec3d{})),
-        keep(static_cast<R>(std::exp(-w.settings.damping * dt))),
-        diffusion(static_cast<R>(dt / (w.dx * w.dx))),
-        dx(static_cast<R>(w.dx)),
-        per_dt(static_cast<R>(w.dx / dt)),
-        skin(of_step > 0 && w.has_skin_friction() && !w.grid.mixture.empty()),
-        staged_drag(static_cast<R>(w.viscous_stages == 0 ? 0 : stage_drag * w.viscosity * dt / (w.dx * w.dx))),
-        part(static_cast<R>(of_step)) {}
-  /// Returns the part of a drag that the stages leave to this visit.
-  R unstaged(const R& drag) const { return part * std::max(R(0), drag - staged_drag); }
+      : NodeConstants<R>(node_constants(w, dt, of_step)), world(w), fields(w, dt) {}
 };
 
 /// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f +
@@ -147,7 +131,9 @@ class BlockVisit {
       Node<R>* const nodes = field(f);
       if (!nodes) continue;
       if (Node<R>* const before = in_block(world_.grid.velocity_old[f]))
-        normalize_old_velocity(before, static_cast<R>(1 / world_.kept_share(f)));
+        for (int n = 0; n < block_nodes; ++n)
+          found_.arrived2 +=
+              static_cast<double>(normalize_old_velocity(before[n], static_cast<R>(1 / world_.kept_share(f))));
       if (damped)
         for_matter(nodes, [&](Node<R>& node, int n) {
           const Vec3<R> v = velocity(node) * (R(1) / node.m);
@@ -234,17 +220,7 @@ class BlockVisit {
 
  private:
   auto* in_block(auto& all) const { return all.empty() ? nullptr : all.data() + block_ * block_nodes; }
-  /// Momenta of the particles that keep a velocity become velocities; `unweigh` turns their weight
-  /// into mass.
-  void normalize_old_velocity(Node<R>* before, R unweigh) {
-    for (int n = 0; n < block_nodes; ++n) {
-      const R weight = before[n].m;
-      before[n] = has_mass(before[n]) ? before[n] * (R(1) / weight) : Node<R>{};
-      found_.arrived2 += static_cast<double>(weight * unweigh * dot(velocity(before[n]), velocity(before[n])));
-    }
-  }
   Node<R>* field(std::size_t f) const { return in_block(world_.grid.field(f)); }
-  static bool has_mass(const Node<R>& node) { return node.m > R(least_mass); }
   template <class Body>
   void for_matter(Node<R>* nodes, const Body& body) const {
     for (int n = 0; n < block_nodes; ++n)
@@ -324,28 +300,20 @@ class BlockVisit {
     }
   }
 
-  /// Calls body(side, velocity along the wall, drag as in skin_drag) for the boundary layers of
-  /// walls on which a liquid's node `n` lies, unless it leaves them.
+  /// Calls body(side, layer) for the boundary layers of walls on which a liquid's node `n` lies,
+  /// unless it leaves them.
   template <class Body>
   void for_boundary_layers(const Node<R>& node, int n, const Body& body) const {
     const Vec3i at = first_ + node_offset(n);
-    for (int a = 0; a < 3; ++a)
-      for (const int side : {2 * a, 2 * a + 1}) {
-        const int plane = side % 2 == 0 ? step_.walls[0].low[a] : step_.walls[0].high[a];
-        if (!world_.walls[static_cast<std::size_t>(side)].skin_friction || at[a] != plane) continue;
-        Vec3<R> along = velocity(node);
-        if (side % 2 == 0 ? along[a] > R(0) : along[a] < R(0)) continue;
-        along[a] = R(0);
-        const R speed = sqrt(dot(along, along));
-        const R viscosity = mixture::viscosity(in_block(world_.grid.mixture)[n]) / node.m;
-        if (!(speed > R(0)) || !(viscosity > R(0))) continue;
-        body(side, along, skin_drag(speed, viscosity, step_.dx, step_.diffusion * step_.dx));
-      }
+    BoundaryLayer<R> layer;
+    for (int side = 0; side < 6; ++side)
+      if (boundary_layer(step_, side, at, node, mixture::viscosity(in_block(world_.grid.mixture)[n]), layer))
+        body(side, layer);
   }
   void wall_friction(Node<R>& node, int n, ImpulseSum (&walls)[6]) const {
-    for_boundary_layers(node, n, [&](int side, const Vec3<R>& along, const R& drag) {
+    for_boundary_layers(node, n, [&](int side, const BoundaryLayer<R>& layer) {
       const Vec3<R> before = velocity(node);
-      set_velocity(node, before - along * (R(1) - R(1) / (R(1) + step_.unstaged(drag))));
+      set_velocity(node, after_layer(step_, before, layer));
       record_contact(walls[side], place_in_block(n), node, before, velocity(node));
     });
   }
@@ -358,8 +326,9 @@ class BlockVisit {
     for (std::uint64_t left = at_walls_; left; left &= left - 1) {
       const int n = std::countr_zero(left);
       if (!has_mass(nodes[n])) continue;
-      for_boundary_layers(nodes[n], n, [&](int side, const Vec3<R>& along, const R& drag) {
-        const Vec3<R> lost = along * (stage.gain * std::min(drag, step_.staged_drag)), before = velocity(nodes[n]);
+      for_boundary_layers(nodes[n], n, [&](int side, const BoundaryLayer<R>& layer) {
+        const Vec3<R> lost = layer.along * (stage.gain * std::min(layer.drag, step_.staged_drag)),
+                      before = velocity(nodes[n]);
         set_velocity(change[n], velocity(change[n]) - lost);
         record_contact(walls[side], place_in_block(n), nodes[n], before, before - lost);
       });

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/backend/wall_distance.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/math/four.h"
 #include "dreampm/physics/transfer.h"
@@ -17,7 +18,6 @@ namespace dreampm {
 namespace {
 
 constexpr float far_away = ContactGaps::none;
-constexpr double kernel_reach = 1.5;  // cells
 
 /// The plane of nodes of a wall.
 template <class R>
@@ -31,13 +31,6 @@ int side_like(const Vec3<R>& normal) {
   for (int b = 1; b < 3; ++b)
     if (std::abs(normal[b]) > std::abs(normal[a])) a = b;
   return 2 * a + (normal[a] < R(0));
-}
-/// The first node of a particle's stencil along an axis, counted from the first that its block
-/// reaches.
-template <class R>
-int first_node(R u) {
-  const int towards_zero = static_cast<int>(u);
-  return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
 }
 /// The mean over a stencil of the gradient of the distance, and of the distance, four numbers at
 /// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
@@ -200,8 +193,7 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
-  const R shift(static_cast<R>(1.5 - plane));
-  const auto distance = [&](R at) { return (at + shift) * inward; };
+  const auto distance = [&](R at) { return distance_from_wall(at, plane, side); };
   if (!(distance(inward > R(0) ? bounds.low[a] : bounds.high[a]) < R(kernel_reach))) return;
   // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
   // Neighbors in memory often have the same node: two tables, so that one does not wait for the

@@ -85,7 +85,8 @@ class ContactGaps {
     std::array<bool, 6> known_{};
   };
 
- private:
+  // What was prepared, for who measures elsewhere.
+
   /// A block of particles near walls or colliders.
   struct NearBlock {
     std::uint32_t block;
@@ -100,6 +101,16 @@ class ContactGaps {
     int side, plane;                   ///< the plane of nodes within those blocks
     WallGap gap;
   };
+  const std::vector<NearBlock>& near_blocks() const { return near_blocks_; }
+  const std::vector<WallNodes>& wall_nodes() const { return walls_; }
+  /// By grid block: the number of its gaps, in all `gap_count()`; -1 of those away from walls and
+  /// colliders.
+  const std::vector<std::int32_t>& gaps_of() const { return gaps_of_; }
+  std::size_t gap_count() const { return cell_gaps_.size(); }
+  /// By grid block and side: a number of `wall_nodes`; -1: none.
+  const std::vector<std::array<std::int32_t, 6>>& walls_of() const { return walls_of_; }
+
+ private:
   /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of
   /// the box whose normal is nearest to that of the face.
   using SideGaps = std::array<float, block_nodes>;
@@ -132,10 +143,10 @@ class ContactGaps {
   std::vector<NearBlock> near_blocks_;
   std::vector<std::int32_t> near_block_of_;  ///< by block of particles; -1: none
   std::vector<NearNodes> near_nodes_;
-  std::vector<std::int32_t> gaps_of_;  ///< by grid block; -1 of those away from walls and colliders
+  std::vector<std::int32_t> gaps_of_;
   std::vector<CellGaps> cell_gaps_;
   std::vector<WallNodes> walls_;
-  std::vector<std::array<std::int32_t, 6>> walls_of_;  ///< by grid block and side; -1: none
+  std::vector<std::array<std::int32_t, 6>> walls_of_;
 };
 
 }  // namespace dreampm

@@ -29,7 +29,7 @@ struct ImpulseSumOf {
   bool operator==(const ImpulseSumOf&) const = default;
   /// The same about the scene's origin, of a sum whose places are cells of `dx` [m] from `first`
   /// [m] on.
-  ImpulseSumOf from_cells(const Vec3<R>& first, const R& dx) const {
+  DM_FN ImpulseSumOf from_cells(const Vec3<R>& first, const R& dx) const {
     return {impulse, cross(first, impulse) + angular * dx, work};
   }
 };

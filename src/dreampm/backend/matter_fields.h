@@ -18,6 +18,9 @@ enum class MatterFields : unsigned {
 constexpr MatterFields operator|(MatterFields a, MatterFields b) {
   return static_cast<MatterFields>(static_cast<unsigned>(a) | static_cast<unsigned>(b));
 }
+constexpr MatterFields without(MatterFields fields, MatterFields part) {
+  return static_cast<MatterFields>(static_cast<unsigned>(fields) & ~static_cast<unsigned>(part));
+}
 constexpr bool includes(MatterFields fields, MatterFields part) {
   return (static_cast<unsigned>(fields) & static_cast<unsigned>(part)) == static_cast<unsigned>(part);
 }

@@ -33,6 +33,8 @@ std::int32_t inward_block(const World<R>& world, std::size_t block, int side) {
   return world.grid.blocks.find(world.wrapped(world.grid.blocks[block] + step));
 }
 
+}  // namespace
+
 template <class R>
 bool measures_density(const World<R>& world, double dt) {
   const double volume_relaxation = volume_relaxation_time(world, dt);
@@ -42,16 +44,6 @@ bool measures_density(const World<R>& world, double dt) {
     return wants;
   });
 }
-
-/// Makes `behind` and `inner` the same, and counts what lies on the wall twice.
-template <class R>
-void add_image(R& behind, R& wall, R& inner) {
-  wall += wall;
-  inner += behind;
-  behind = inner;
-}
-
-}  // namespace
 
 template <class R>
 bool has_image_mass(const World<R>& world, int side) {
@@ -201,6 +193,7 @@ double MirrorWalls<R>::add_impulses(std::array<ImpulseSum, 6>& walls) const {
 
 #define DM_INSTANTIATE(R)                                      \
   template bool has_image_mass(const World<R>&, int);          \
+  template bool measures_density(const World<R>&, double);     \
   template R without_images(const World<R>&, const Vec3i&, R); \
   template class MirrorWalls<R>;
 DM_INSTANTIATE(float)

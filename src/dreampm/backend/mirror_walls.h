@@ -6,6 +6,7 @@
 // at a wall where matter sticks is half of what it should be.
 #pragma once
 #include <array>
+#include <span>
 #include <vector>
 
 #include "dreampm/backend/backend.h"
@@ -24,6 +25,10 @@ bool has_image_mass(const World<R>& world, int side);
 /// at the nodes before a wall and to its image behind: colliders go on behind walls.
 template <class R>
 R without_images(const World<R>& world, const Vec3i& node, R blocked);
+
+/// True if a law asks for a density in a step of `dt` [s].
+template <class R>
+bool measures_density(const World<R>& world, double dt);
 
 /// The images of one grid. What they do to velocities are two halves of one step: `fold_ghosts`
 /// before contact, `reflect_ghosts` after it; masses are not changed by these. All threads of a
@@ -54,7 +59,6 @@ class MirrorWalls {
   /// material asks for a density in a step of `dt` [s].
   void add_image_mass(ThreadTeam& team, World<R>& world, double dt) const;
 
- private:
   /// A block's nodes behind a wall, with those on it and those that they mirror: the numbers of the
   /// planes' first nodes.
   struct Layer {
@@ -62,6 +66,15 @@ class MirrorWalls {
     int side;
     std::array<bool, 2> folds;  ///< by field
   };
+  /// The layers across an axis: no two of them share a node.
+  std::span<const Layer> layers(int axis) const {
+    const std::size_t begin = axes_[static_cast<std::size_t>(axis)];
+    return {layers_.data() + begin, axes_[static_cast<std::size_t>(axis) + 1] - begin};
+  }
+  /// True if any field is folded anywhere.
+  bool folds() const { return folds_; }
+
+ private:
   /// Sums of a layer's change of one field.
   struct Done {
     ImpulseSum impulses;

@@ -5,13 +5,10 @@
 #include <type_traits>
 
 #include "dreampm/backend/impulse_sum.h"
-#include "dreampm/physics/node.h"
+#include "dreampm/backend/node_terms.h"
 #include "dreampm/state/grid.h"
 
 namespace dreampm {
-
-/// Masses of nodes below this count as nothing: a stencil's outermost weights.
-inline constexpr double least_mass = 1e-36;
 
 /// Sums over the nodes of one block.
 struct NodeSums {
@@ -21,12 +18,6 @@ struct NodeSums {
   double fastest2 = 0;  ///< the square of the largest speed [m^2/s^2]
   bool finite = true;
 };
-
-inline constexpr int plane_nodes = block_width * block_width;
-/// Node `n` of those of a block in a plane across an axis, from the first of them.
-constexpr int node_in_plane(int axis, int n) {
-  return n / block_width * node_step[(axis + 1) % 3] + n % block_width * node_step[(axis + 2) % 3];
-}
 
 /// The planes of nodes behind a wall of the box, on it and as far before it.
 template <class R>
@@ -119,16 +110,14 @@ DM_FN void convert_nodes(Node<Scalar<S>>* nodes, Scalar<S> keep, const Vec3<Scal
   using R = Scalar<S>;
   if (is_empty(nodes)) return;
   const Vec3<S> kicks{S(kick.x), S(kick.y), S(kick.z)};
-  const S kept(keep), zero(R(0)), one(R(1)), least(static_cast<R>(least_mass));
+  const S kept(keep), zero(R(0));
   S mass(zero), lowest(zero);
   Vec3<S> moment{zero, zero, zero};
   for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
     Vec3<S> q;
     S m;
     Row::load(nodes + n, q, m);
-    const auto there = m > least;
-    const Vec3<S> v = free_velocity(q, select(there, m, one), kept, kicks);
-    Row::store({select(there, v.x, zero), select(there, v.y, zero), select(there, v.z, zero)}, m, nodes + n);
+    Row::store(node_velocity(q, m, kept, kicks), m, nodes + n);
     mass += m;
     lowest = min(m, lowest);
     const auto& at = node_places<R>.at;
@@ -163,7 +152,6 @@ template <class S, class Row>
 DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& walls, int side, const Scalar<S>* approach,
                          ImpulseSum& impulses) {
   using R = Scalar<S>;
-  const int axis = axis_of(side);
   ImpulseSumOf<S> given;
   for (int n = 0; n < block_nodes; n += LaneTraits<S>::lanes) {
     const auto& at = node_places<R>.at;
@@ -173,18 +161,11 @@ DM_FN void contact_nodes(Node<Scalar<S>>* nodes, const BoxWalls<Scalar<S>>& wall
     Vec3<S> before;
     S m;
     Row::load(nodes + n, before, m);
-    Vec3<S> onto = before;
-    S let(R(0));
-    if (approach) {
-      let = walls.let_through(side, before, Row::numbers(approach + n));
-      onto[axis] -= let;
-    }
-    const Vec3<S> stopped = walls.contact(side, onto);
-    Vec3<S> after = stopped;
-    if (approach) after[axis] += let;
-    after = select(held, after, before);
+    const S gap = approach ? Row::numbers(approach + n) : S(R(0));
+    const WallContact<S> met = wall_contact<S>(walls, side, before, approach ? &gap : nullptr);
+    const Vec3<S> after = select(held, met.after, before);
     Row::store(after, m, nodes + n);
-    given.add(place, m, before, after, stopped);
+    given.add(place, m, before, after, met.stopped);
   }
   impulses += sum_of<Row>(given);
 }
@@ -227,29 +208,27 @@ DM_FN std::uint16_t fold_planes(const MirrorPlanes<Scalar<S>>& planes, ImpulseSu
   if (empty) return 0;
   PlaneCopy<R> inners(planes.inners, axis);
   const PlaneCopy<R> walls(planes.walls, axis);
-  const S zero(R(0)), one(R(1)), least(static_cast<R>(least_mass)), inward(static_cast<R>(inward_of(planes.side)));
+  const S zero(R(0));
   const Vec3<S> still{zero, zero, zero};
   ImpulseSumOf<S> given;
-  unsigned folded = 0;
+  unsigned nodes = 0;
   for (int n = 0; n < plane_nodes; n += LaneTraits<S>::lanes) {
     Vec3<S> behind, on, before;
     S ghost, wall, m;
     Row::load(ghosts.nodes + n, behind, ghost);
     Row::load(walls.nodes + n, on, wall);
     Row::load(inners.nodes + n, before, m);
-    auto folds = ghost > least && m > least && Row::mask(planes.closed >> n);
-    if (planes.type == WallType::separate) folds = folds && on[axis] * inward < zero;
+    const auto folds = image_folds(planes.side, planes.type, ghost, m, on) && Row::mask(planes.closed >> n);
     if (!any(folds)) continue;
-    folded |= Row::bits(folds) << n;
-    const Vec3<S> mixed =
-        before + (image_of(behind, axis, planes.type) - before) * (ghost / select(folds, ghost + m, one));
+    nodes |= Row::bits(folds) << n;
+    const Vec3<S> mixed = folded(planes.side, planes.type, folds, behind, ghost, before, m);
     const Vec3<S> after = select(folds, mixed, before);
     Row::store(after, m, inners.nodes + n);
     given.add(places_in_plane<S, Row>(axis, n), m, before, after, still);
   }
-  inners.store(planes.inners, axis, folded);
+  inners.store(planes.inners, axis, nodes);
   impulses += sum_of<Row>(given);
-  return static_cast<std::uint16_t>(folded);
+  return static_cast<std::uint16_t>(nodes);
 }
 
 template <class S, class Row>

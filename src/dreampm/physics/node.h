@@ -23,14 +23,14 @@ struct BoxWalls {
   S friction[6];
 
   /// Counted from the node `first` on.
-  BoxWalls from(const Vec3<std::int32_t>& first) const {
+  DM_FN BoxWalls from(const Vec3<std::int32_t>& first) const {
     BoxWalls w = *this;
     for (int a = 0; a < 3; ++a) w.low[a] -= first[a], w.high[a] -= first[a];
     return w;
   }
   /// True if some of the nodes from 0 up to `count` along an axis lie on the wall of that side, or
   /// behind it.
-  bool reaches(int side, int count) const { return side % 2 == 0 ? low[side / 2] >= 0 : high[side / 2] < count; }
+  DM_FN bool reaches(int side, int count) const { return side % 2 == 0 ? low[side / 2] >= 0 : high[side / 2] < count; }
   /// Returns a mask: true for the nodes `n` that do.
   template <class R>
   DM_FN auto holds(int side, const Vec3<R>& n) const {

@@ -72,7 +72,7 @@ class CellReach {
 }  // namespace
 
 template <class R>
-void GridTopology<R>::operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare) {
+bool GridTopology<R>::lay(World<R>& world, std::span<const std::uint64_t> cells) {
   const std::vector<Vec3i>& blocks = world.particle_blocks;
   resize_for_overwrite(halos_, blocks.size());
   parallel_for(halos_.size(), 64,
@@ -80,30 +80,51 @@ void GridTopology<R>::operator()(World<R>& world, std::span<const std::uint64_t>
   std::vector<Vec3i>& wanted = halo_union_(world, halos_);
   GridFields<R>& grid = world.grid;
   const std::size_t nodes = wanted.size() * block_nodes;
-
   bool same = wanted == grid.blocks.all();
-  for_fields(world, grid, spare,
+  for_fields(world, grid, grid,
              [&](auto& field, auto&, bool needed) { same = same && field.size() == (needed ? nodes : 0); });
-  if (same) return;
-
+  if (same) return false;
   std::swap(blocks_, grid.blocks);
   grid.blocks.exchange(wanted);
+  return true;
+}
+
+template <class R>
+void GridTopology<R>::find_before(const World<R>& world, std::vector<std::int32_t>& before) const {
+  const BlockList& now = world.grid.blocks;
+  resize_for_overwrite(before, now.size());
+  parallel_ranges(now.size(), 128, [&](std::size_t begin, std::size_t end) {
+    std::size_t old = begin < end ? blocks_.first_from(now[begin]) : 0;
+    for (std::size_t b = begin; b < end; ++b) {
+      while (old < blocks_.size() && block_less(blocks_[old], now[b])) ++old;
+      const bool carried = old < blocks_.size() && blocks_[old] == now[b];
+      before[b] = carried ? static_cast<std::int32_t>(old) : BlockList::none;
+    }
+  });
+}
+
+template <class R>
+void GridTopology<R>::operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare) {
+  if (lay(world, cells)) carry(world, spare);
+}
+
+template <class R>
+void GridTopology<R>::carry(World<R>& world, GridFields<R>& spare) {
+  GridFields<R>& grid = world.grid;
+  const std::size_t nodes = grid.blocks.size() * block_nodes;
+  find_before(world, before_);
   for_fields(world, spare, grid,
              [&](auto& field, auto&, bool needed) { resize_for_overwrite(field, needed ? nodes : 0); });
   parallel_ranges(grid.blocks.size(), 128, [&](std::size_t begin, std::size_t end) {
-    std::size_t old = begin < end ? blocks_.first_from(grid.blocks[begin]) : 0;
-    for (std::size_t b = begin; b < end; ++b) {
-      while (old < blocks_.size() && block_less(blocks_[old], grid.blocks[b])) ++old;
-      const bool carried = old < blocks_.size() && blocks_[old] == grid.blocks[b];
+    for (std::size_t b = begin; b < end; ++b)
       for_fields(world, spare, grid, [&](auto& to, auto& from, bool needed) {
         if (!needed) return;
         const auto target = to.begin() + static_cast<std::ptrdiff_t>(b * block_nodes);
-        if (carried && !from.empty())
-          std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(old * block_nodes), block_nodes, target);
+        if (before_[b] != BlockList::none && !from.empty())
+          std::copy_n(from.begin() + std::ptrdiff_t{before_[b]} * block_nodes, block_nodes, target);
         else
           std::fill_n(target, block_nodes, typename std::remove_reference_t<decltype(to)>::value_type{});
       });
-    }
   });
   for_fields(world, spare, grid, [&](auto& a, auto& b, bool) {
     a.swap(b);

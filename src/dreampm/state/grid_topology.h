@@ -1,6 +1,8 @@
 // Grid topology: the list of blocks that the grid has, found from where particles are.
 #pragma once
+#include <cstdint>
 #include <span>
+#include <vector>
 
 #include "dreampm/state/neighbors.h"
 
@@ -18,10 +20,20 @@ class GridTopology {
   /// ones; their contents are undefined before and after.
   void operator()(World<R>& world, std::span<const std::uint64_t> cells, GridFields<R>& spare);
 
+  // Its two parts, for who holds the nodes elsewhere.
+
+  /// Lays the blocks; whether they are others than before, or a field comes or goes.
+  bool lay(World<R>& world, std::span<const std::uint64_t> cells);
+  /// By block of the grid, after that: its number before, or BlockList::none.
+  void find_before(const World<R>& world, std::vector<std::int32_t>& before) const;
+
  private:
+  void carry(World<R>& world, GridFields<R>& spare);
+
   HaloUnion halo_union_;
   std::vector<HaloMask> halos_;
-  BlockList blocks_;  ///< the former ones, while nodes are carried over
+  BlockList blocks_;                  ///< the former ones, while nodes are carried over
+  std::vector<std::int32_t> before_;  ///< as find_before
 };
 
 }  // namespace dreampm

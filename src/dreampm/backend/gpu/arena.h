@@ -43,6 +43,18 @@ struct alignas(16) NodeCounts {
   std::int32_t x, y, z, m;
 };
 
+/// Sums that go on at the other end of the range: of a pass that has to be done again.
+DM_FN std::int32_t wrapped_sum(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+DM_FN NodeCounts operator+(const NodeCounts& a, const NodeCounts& b) {
+  return {wrapped_sum(a.x, b.x), wrapped_sum(a.y, b.y), wrapped_sum(a.z, b.z), wrapped_sum(a.m, b.m)};
+}
+DM_FN NodeCounts operator-(const NodeCounts& a) {
+  const auto less = [](std::int32_t n) { return static_cast<std::int32_t>(0 - static_cast<std::uint32_t>(n)); };
+  return {less(a.x), less(a.y), less(a.z), less(a.m)};
+}
+
 /// What all sets of a block may put on one node at most, per field: mass [kg] and rest volume over
 /// dx^3 [1]. No weight is above 0.75^3; and it is no less than one particle's whole, which is
 /// counted before it is spread.
@@ -82,10 +94,10 @@ DM_FN ScatterBounds widened(const ScatterBounds& b) {
   return {margin * b.speed, margin * b.mass, margin * b.volume_ratio, margin * b.viscosity};
 }
 
-/// Units of momentum and mass of a field. That of mass fits all that the block holds: so the most
-/// that came to a node is known, and with it whether momentum fitted.
+/// Units of momentum and mass of a field.
 DM_FN ScatterUnits field_units(const BlockLoad& load, int field, const ScatterBounds& bounds) {
-  return {counts_per_unit(min(load.mass[field], bounds.mass) * bounds.speed), counts_per_unit(load.mass[field])};
+  const float most = min(load.mass[field], bounds.mass);
+  return {counts_per_unit(most * bounds.speed), counts_per_unit(most)};
 }
 /// Units of the mixture: of volumes, in place of a momentum, and of viscosity times mass.
 DM_FN ScatterUnits mixture_units(const BlockLoad& load, const ScatterBounds& bounds) {

@@ -17,6 +17,7 @@
 // within a phase does not show here, but under compute-sanitizer on a card.
 #pragma once
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <numeric>
@@ -64,6 +65,18 @@ class HostBlock {
   /// other end, as on a device.
   static void add(std::int32_t& to, std::int32_t value) {
     to = static_cast<std::int32_t>(static_cast<std::uint32_t>(to) + static_cast<std::uint32_t>(value));
+  }
+  /// Adds 1 to a counter in a device's memory that threads of any block add to, and returns what it
+  /// was.
+  static std::int32_t count(std::int32_t& counter) {
+    return std::atomic_ref<std::int32_t>(counter).fetch_add(1, std::memory_order_relaxed);
+  }
+  /// Lowers a number in a device's memory that other threads lower too, of any block.
+  static void lower(std::int32_t& to, std::int32_t value) {
+    const std::atomic_ref<std::int32_t> shared(to);
+    std::int32_t now = shared.load(std::memory_order_relaxed);
+    while (value < now && !shared.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
+    }
   }
   /// The nearest whole number, halves to even; the last one where it is beyond the range, and 0 of
   /// what is no number, as on a device.

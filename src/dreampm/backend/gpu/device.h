@@ -2,6 +2,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,10 +68,11 @@ class Buffer {
     resize(from.size());
     if (size_ > 0) device_->upload(data_, from.data(), size_ * sizeof(T));
   }
-  /// `to`: as long as this.
+  /// `to`: as long as this, else it throws std::logic_error: who asks has another world.
   template <class Array>
   void download(Array& to) const {
     static_assert(sizeof(*to.data()) == sizeof(T));
+    if (to.size() != size_) throw std::logic_error("an array of a World is not as long as that of the device");
     if (size_ > 0) device_->download(to.data(), data_, size_ * sizeof(T));
   }
 

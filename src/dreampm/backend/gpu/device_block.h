@@ -29,18 +29,32 @@ DM_DEVICE void wait_for_all() {
   __builtin_amdgcn_fence(__ATOMIC_ACQUIRE, "workgroup");
 }
 DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { __atomic_fetch_add(&to, value, __ATOMIC_RELAXED); }
+DM_DEVICE std::int32_t count_in_memory(std::int32_t& counter) {
+  return __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED);
+}
+DM_DEVICE void lower_in_memory(std::int32_t& to, std::int32_t value) {
+  __atomic_fetch_min(&to, value, __ATOMIC_RELAXED);
+}
 DM_DEVICE std::int32_t to_nearest(float value) { return static_cast<std::int32_t>(__builtin_rintf(value)); }
 #elif defined(__clang__)
 DM_DEVICE int thread_number() { return __nvvm_read_ptx_sreg_tid_x(); }
 DM_DEVICE int block_number() { return __nvvm_read_ptx_sreg_ctaid_x(); }
 DM_DEVICE void wait_for_all() { __syncthreads(); }
 DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { __atomic_fetch_add(&to, value, __ATOMIC_RELAXED); }
+DM_DEVICE std::int32_t count_in_memory(std::int32_t& counter) {
+  return __atomic_fetch_add(&counter, 1, __ATOMIC_RELAXED);
+}
+DM_DEVICE void lower_in_memory(std::int32_t& to, std::int32_t value) {
+  __atomic_fetch_min(&to, value, __ATOMIC_RELAXED);
+}
 DM_DEVICE std::int32_t to_nearest(float value) { return __nvvm_f2i_rn(value); }
 #else
 DM_DEVICE int thread_number() { return static_cast<int>(threadIdx.x); }
 DM_DEVICE int block_number() { return static_cast<int>(blockIdx.x); }
 DM_DEVICE void wait_for_all() { __syncthreads(); }
 DM_DEVICE void add_to_shared(std::int32_t& to, std::int32_t value) { atomicAdd(&to, value); }
+DM_DEVICE std::int32_t count_in_memory(std::int32_t& counter) { return atomicAdd(&counter, 1); }
+DM_DEVICE void lower_in_memory(std::int32_t& to, std::int32_t value) { atomicMin(&to, value); }
 DM_DEVICE std::int32_t to_nearest(float value) { return __float2int_rn(value); }
 #endif
 
@@ -62,6 +76,8 @@ class DeviceBlock {
     T own_{};
   };
   static DM_DEVICE void add(std::int32_t& to, std::int32_t value) { add_to_shared(to, value); }
+  static DM_DEVICE std::int32_t count(std::int32_t& counter) { return count_in_memory(counter); }
+  static DM_DEVICE void lower(std::int32_t& to, std::int32_t value) { lower_in_memory(to, value); }
   static DM_DEVICE std::int32_t nearest(float value) { return to_nearest(value); }
 };
 

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "dreampm/backend/common.h"
-#include "dreampm/backend/gpu/kernels.h"
+#include "dreampm/backend/gpu/grid_visit.h"
+#include "dreampm/backend/gpu/particle_passes.h"
+#include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/parallel.h"
@@ -16,36 +18,37 @@
 namespace dreampm {
 namespace {
 
-using gpu::Buffer;
-using gpu::ScatterBounds;
-
-/// The fields of the grid that particles give to, in the order of the arenas.
-enum Target : std::size_t { nodes, solids, old_nodes, old_solids, stress_nodes, stress_solids, mixture_share, targets };
-constexpr std::size_t of_field(Target first, std::size_t field) { return first + field; }
-/// The field that decides the units of a target, as SumArenas takes it.
-constexpr int unit_field(std::size_t target) { return target == mixture_share ? 2 : static_cast<int>(target % 2); }
-
-Nodes<float>& host_field(GridFields<float>& grid, std::size_t target) {
-  const std::size_t f = target % 2;
-  if (target == mixture_share) return grid.mixture;
-  return target < old_nodes ? grid.field(f) : target < stress_nodes ? grid.velocity_old[f] : grid.stress[f];
-}
+using gpu::targets;
 
 class Gpu final : public Backend<float> {
  public:
   Gpu(std::string_view name, std::unique_ptr<gpu::Device> device)
-      : device_(std::move(device)), name_(name), isa_(device_->isa()), memory_(*device_) {}
+      : device_(std::move(device)),
+        name_(name),
+        isa_(device_->isa()),
+        memory_(*device_),
+        passes_(*device_, memory_),
+        sort_(*device_),
+        visit_(*device_) {}
   std::string_view name() const override { return name_; }
   std::string_view isa() const override { return isa_; }
 
   void attach(const World<float>& world) override {
     obstacles_.forget();
+    home_ = MatterFields::all;
     refresh(world);
     upload_particles(world);
   }
 
   void sort(World<float>& world) override {
-    bring_home(world, MatterFields::particles);
+    if (gpu::ParticleSort::takes(world)) {
+      nodes_to_device(world);
+      sort_(world, memory_);
+      home_ = MatterFields::none;
+      refresh(world);
+      return;
+    }
+    bring_home(world, MatterFields::all);
     regroup_(world, next_);
     refresh(world);
     upload_particles(world);
@@ -54,11 +57,12 @@ class Gpu final : public Backend<float> {
   void colliders_moved(const World<float>& world) override {
     obstacles_.prepare(world);
     update_.colliders_moved(world, obstacles_);
+    if (gpu::GridVisit::takes(world, obstacles_)) visit_.prepare(world, update_.images(), update_.gaps());
     upload_obstacles(world);
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
-    bring_home(world, MatterFields::particles);
+    bring_home(world, MatterFields::all);
     insert(world, set, seeds);
     refresh(world);
     upload_particles(world);
@@ -66,45 +70,46 @@ class Gpu final : public Backend<float> {
   }
 
   GridStats grid_update(World<float>& world, double dt) override {
+    if (gpu::GridVisit::takes(world, obstacles_)) {
+      nodes_to_device(world);
+      home_ = without(home_, MatterFields::nodes);
+      return visit_(world, memory_, dt);
+    }
+    change_nodes_at_home(world);
     // Gaps are measured from the places of solids and grains.
     if (update_.gaps().has(world, 0) || update_.gaps().has(world, 1)) bring_home(world, MatterFields::position);
     return update_(world, obstacles_, dt);
   }
 
   double sub_cycle(World<float>& world, double dt, GridStats& found) override {
+    change_nodes_at_home(world);
     fit_grid(world, next_);
     return update_.sub_cycle(
-        world, obstacles_, dt, found, next_, [&] { find_viscous_forces(world, dt); },
-        [&] { return fastest_particle(world); });
+        world, obstacles_, dt, found, next_, [&] { passes_.find_viscous_forces(world, dt, next_); },
+        [&] { return passes_.fastest_particle(world); });
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
-    begin_pass(world, obstacles_, update_.images(), next_, dt);
-    upload_nodes(world);
+    fit_grid(world, next_);
+    nodes_to_device(world);
+    visit_.add_image_mass(world, memory_, dt);
     if (obstacles_.any_thin()) upload_distances(world);
-    ScatterBounds bounds = assumed_bounds(world, world.node_speed);
-    PassStats total;
-    for (;;) {
-      const ScatterBounds found = pass(world, dt, dt_next, motion != nullptr, bounds, total);
-      if (!total.finite) return total;
-      if (gpu::within(found, bounds)) {
-        world.scatter_bounds = {found.speed, found.mass, found.volume_ratio, found.viscosity};
-        break;
-      }
-      bounds = gpu::largest(bounds, gpu::widened(found));
-    }
-    for (std::size_t t = 0; t < targets; ++t) sum_arenas(t, bounds);
-    for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].swap(world.sets[s].transfer.keeps_velocity());
+    upload_base(world);
+    const PassStats total = passes_.g2p2g(world, dt, dt_next, motion != nullptr, obstacles_.any_thin(), next_);
+    if (!total.finite) return total;
     swap_fields(world.grid, next_);
-    home_ = MatterFields::id | MatterFields::nodes;
-    if (motion) download_motion(world, *motion);
+    home_ = includes(home_, MatterFields::id) ? MatterFields::id : MatterFields::none;
+    if (motion) passes_.download_motion(world, *motion);
     return total;
   }
 
-  PassStats state_bounds(const World<float>& world) override { return dreampm::state_bounds(at_home(world)); }
+  PassStats state_bounds(const World<float>& world) override {
+    return dreampm::state_bounds(at_home(world, MatterFields::particles));
+  }
 
   void scatter_particles(World<float>& world, const Motion<float>& motion) override {
     bring_home(world, MatterFields::particles);
+    change_nodes_at_home(world);
     dreampm::scatter_particles(world, motion, obstacles_);
   }
 
@@ -115,48 +120,69 @@ class Gpu final : public Backend<float> {
       if (includes(fields, MatterFields::position))
         memory_.sets[s].upload_position(world.sets[s], world.particle_blocks.size());
       if (includes(fields, MatterFields::state)) memory_.sets[s].upload_state(world.sets[s]);
+      if (includes(fields, MatterFields::id)) memory_.sets[s].id.upload(world.sets[s].id);
     }
+    if (includes(fields, MatterFields::nodes)) nodes_there_ = false;
     home_ = home_ | fields;
   }
 
   Balance balance(const World<float>& world, const Motion<float>& motion) override {
-    return dreampm::balance(at_home(world), motion);
+    return dreampm::balance(at_home(world, MatterFields::particles), motion);
   }
   double stress_power(const World<float>& world, const Motion<float>& motion) override {
-    return dreampm::stress_power(at_home(world), motion);
+    return dreampm::stress_power(at_home(world, MatterFields::particles), motion);
+  }
+  ImpulseSum grid_momentum(const World<float>& world, NodesHold hold) override {
+    return dreampm::grid_momentum(at_home(world, MatterFields::nodes), hold);
   }
 
  private:
   // ---- where the matter is
 
-  /// Copies what `fields` name of the particles to the World, where its arrays are not current.
+  /// Copies what `fields` name to the World, where its arrays are not current.
   void bring_home(World<float>& world, MatterFields fields) {
     const auto wants = [&](MatterFields part) { return includes(fields, part) && !includes(home_, part); };
-    const bool position = wants(MatterFields::position), state = wants(MatterFields::state);
+    const bool id = wants(MatterFields::id), position = wants(MatterFields::position),
+               state = wants(MatterFields::state);
     memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      if (id) memory_.sets[s].id.download(world.sets[s].id);
       if (position) memory_.sets[s].download_position(world.sets[s]);
       if (state) memory_.sets[s].download_state(world.sets[s]);
     }
-    if (position) home_ = home_ | MatterFields::position;
-    if (state) home_ = home_ | MatterFields::state;
+    if (wants(MatterFields::nodes))
+      for (std::size_t t = 0; t < targets; ++t) memory_.nodes[t].download(gpu::host_field(world.grid, t));
+    home_ = home_ | fields;
   }
-  /// The world with all of its particles; a copy of it where they are not there.
-  const World<float>& at_home(const World<float>& world) {
-    if (includes(home_, MatterFields::position | MatterFields::state)) return world;
+  /// The world with what `fields` name; a copy of it where that is not there.
+  const World<float>& at_home(const World<float>& world, MatterFields fields) {
     const MatterFields before = home_;
+    if (includes(before, without(fields, MatterFields::motion))) return world;
     copy_ = world;
-    bring_home(copy_, MatterFields::particles);
+    bring_home(copy_, fields);
     home_ = before;
     return copy_;
   }
+  /// The whole world, which is at home.
   void upload_particles(const World<float>& world) {
     memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       memory_.sets[s].upload_position(world.sets[s], world.particle_blocks.size());
       memory_.sets[s].upload_state(world.sets[s]);
+      memory_.sets[s].id.upload(world.sets[s].id);
     }
-    home_ = MatterFields::all;
+    home_ = home_ | MatterFields::particles;
+    nodes_there_ = false;
+  }
+  /// Brings the nodes home, where they will change.
+  void change_nodes_at_home(World<float>& world) {
+    bring_home(world, MatterFields::nodes);
+    nodes_there_ = false;
+  }
+  void nodes_to_device(World<float>& world) {
+    if (nodes_there_) return;
+    for (std::size_t t = 0; t < targets; ++t) memory_.nodes[t].upload(gpu::host_field(world.grid, t));
+    nodes_there_ = true;
   }
 
   // ---- what follows from the lists of blocks
@@ -171,6 +197,8 @@ class Gpu final : public Backend<float> {
     memory_.loads.upload(loads);
     memory_.stencil_blocks.upload(gpu::flat(stencil_blocks_));
     memory_.sources.upload(stencil_blocks_, world.grid.blocks.size());
+    passes_.prepare(blocks);
+    visit_.prepare(world, update_.images(), update_.gaps());
     upload_obstacles(world);
   }
   void upload_obstacles(const World<float>& world) {
@@ -179,13 +207,16 @@ class Gpu final : public Backend<float> {
       walls[b] = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, stencil_blocks_[b]));
     memory_.walls.upload(walls);
     memory_.clearance.upload(obstacles_.clearance());
+    based_ = false;
   }
 
-  // ---- what a pass reads
-
-  void upload_nodes(World<float>& world) {
-    for (std::size_t t = 0; t < targets; ++t)
-      if (t != stress_nodes && t != stress_solids) memory_.nodes[t].upload(host_field(world.grid, t));
+  /// The colliders' share of the mixture, with which the grid of the step to come begins.
+  void upload_base(const World<float>& world) {
+    if (based_) return;
+    if (!next_.mixture.empty())
+      parallel_for(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
+    memory_.base.upload(next_.mixture);
+    based_ = true;
   }
   /// Distances from colliders that are too thin for the splines between the nodes.
   void upload_distances(World<float>& world) {
@@ -205,189 +236,22 @@ class Gpu final : public Backend<float> {
     }
   }
 
-  gpu::PassInput input_of(const World<float>& world, std::size_t s) const {
-    const ParticleSet<float>& set = world.sets[s];
-    const gpu::SetMemory& memory = memory_.sets[s];
-    const std::size_t field = world.field_of(set);
-    gpu::PassInput in{memory.now.pointers(set.transfer.keeps_velocity()),
-                      memory.block_start.data(),
-                      memory_.stencil_blocks.data(),
-                      memory_.walls.data(),
-                      memory_.loads.data(),
-                      memory_.nodes[of_field(nodes, field)].data(),
-                      set.transfer.keeps_velocity() ? memory_.nodes[of_field(old_nodes, field)].data() : nullptr,
-                      memory_.nodes[mixture_share].data(),
-                      memory_.clearance.data(),
-                      {}};
-    if (obstacles_.any_thin())
-      for (std::size_t c = 0; c < 4; ++c) in.distance[c] = memory.distance[c].data();
-    return in;
-  }
-
-  // ---- passes
-
-  /// `speed` [m/s]: of the fastest node.
-  static ScatterBounds assumed_bounds(const World<float>& world, double speed) {
-    const auto& [scattered, mass, ratio, viscosity] = world.scatter_bounds;
-    double one = 0;  // no less than a particle's whole
-    for (const ParticleSet<float>& set : world.sets) one = std::max(one, set.mass);
-    return gpu::widened(
-        {static_cast<float>(std::max(scattered, speed)), static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20),
-         static_cast<float>(std::max(ratio, 2.0)), static_cast<float>(std::max(viscosity, world.viscosity))});
-  }
-
-  /// Takes a set's turn to write to a target's arenas.
-  gpu::PassOutput::Arena arena(std::size_t target) {
-    if (host_field(next_, target).empty()) return {nullptr, false};
-    memory_.arenas[target].resize(stencil_blocks_.size() * gpu::arena_nodes);
-    return {memory_.arenas[target].data(), !std::exchange(written_[target], true)};
-  }
-
-  /// One pass over all sets. Adds up `total`, and returns the bounds of what was scattered.
-  ScatterBounds pass(World<float>& world, double dt, double dt_next, bool looks, const ScatterBounds& bounds,
-                     PassStats& total) {
-    const int blocks = static_cast<int>(stencil_blocks_.size());
-    total = {};
-    written_ = {};
-    memory_.totals.resize(world.sets.size());
-    memory_.block_sums.resize(stencil_blocks_.size());
-    for (std::size_t s = 0; blocks > 0 && s < world.sets.size(); ++s) {
-      launch_pass(world, s, dt, dt_next, looks, bounds);
-      launch(gpu::AddUp{memory_.block_sums.data(), memory_.totals.data() + s, blocks}, 1);
-    }
-    std::vector<gpu::BlockSums> sums(world.sets.size(), gpu::BlockSums::none());
-    if (blocks > 0) memory_.totals.download(sums);
-    ScatterBounds found{};
-    for (std::size_t s = 0; s < sums.size(); ++s) {
-      total.add(gpu::stats_of(world, world.sets[s], sums[s]));
-      found = gpu::largest(found, sums[s].scattered);
-    }
-    return found;
-  }
-
-  void launch_pass(World<float>& world, std::size_t s, double dt, double dt_next, bool looks,
-                   const ScatterBounds& bounds) {
-    const ParticleSet<float>& set = world.sets[s];
-    gpu::SetMemory& memory = memory_.sets[s];
-    const std::size_t field = world.field_of(set);
-    const bool keeps = set.transfer.keeps_velocity();
-    const SetStep<float> step = set_step(world, set, dt, dt_next);
-    gpu::PassOutput out{};
-    memory.next.fit(memory.now);
-    out.particles = memory.next.pointers(keeps);
-    out.field = arena(of_field(nodes, field));
-    if (keeps) out.velocity_old = arena(of_field(old_nodes, field));
-    if (step.sub_cycled) out.stress = arena(of_field(stress_nodes, field));
-    out.mixture = arena(mixture_share);
-    out.sums = memory_.block_sums.data();
-    if (looks) memory.output_to(out);
-    const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts && !obstacles_.any();
-    Materials::with(set.material, [&]<class M>() {
-      const auto with = [&]<bool relaxes, bool is_plain>() {
-        launch(
-            gpu::Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds, input_of(world, s),
-                                            out, static_cast<int>(field), world.measures_by_volume(field)},
-            static_cast<int>(stencil_blocks_.size()));
-      };
-      if constexpr (VolumeRelaxed<M>)
-        if (step.volume_relaxation > 0)
-          return plain ? with.template operator()<true, true>() : with.template operator()<true, false>();
-      plain ? with.template operator()<false, true>() : with.template operator()<false, false>();
-    });
-  }
-
-  /// Brings what the arenas of a target hold to the grid of the step to come.
-  void sum_arenas(std::size_t target, const ScatterBounds& bounds) {
-    Nodes<float>& to = host_field(next_, target);
-    if (to.empty()) return;
-    Buffer<Node<float>>& nodes = memory_.nodes[target];
-    const bool based = target == mixture_share;
-    if (based) memory_.base.upload(to);
-    nodes.resize(to.size());
-    if (!written_[target]) {
-      if (!based) std::fill(to.begin(), to.end(), Node<float>{});
-      return;
-    }
-    launch(gpu::SumArenas{memory_.arenas[target].data(), memory_.sources.first.data(), memory_.sources.arena.data(),
-                          memory_.sources.corner.data(), memory_.loads.data(), based ? memory_.base.data() : nullptr,
-                          nodes.data(), bounds, unit_field(target)},
-           static_cast<int>(to.size() / block_nodes));
-    nodes.download(to);
-  }
-
-  void download_motion(const World<float>& world, Motion<float>& motion) {
-    motion.sets.resize(world.sets.size());
-    for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].download_motion(motion.sets[s]);
-  }
-
-  // ---- stages of viscosity
-
-  void find_viscous_forces(World<float>& world, double dt) {
-    for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(nodes, f)].upload(world.grid.field(f));
-    // World::node_speed is that of the step before, and no state. The mass of nodes is not known
-    // where matter came in since the last pass: what the blocks hold bounds it.
-    ScatterBounds bounds = assumed_bounds(world, 0);
-    bounds.mass = 1e20f;
-    for (;;) {
-      written_ = {};
-      const float speed = launch_viscous(world, dt, bounds);
-      if (!(speed > bounds.speed)) break;
-      bounds = gpu::largest(bounds, gpu::widened({speed, 0, 0, 0}));
-    }
-    for (std::size_t f = 0; f < 2; ++f) sum_arenas(of_field(nodes, f), bounds);
-  }
-  /// Returns the largest speed that was scattered [m/s].
-  float launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds) {
-    memory_.block_speeds.resize(stencil_blocks_.size());
-    std::vector<float> speeds(stencil_blocks_.size());
-    float fastest = 0;
-    for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      const ParticleSet<float>& set = world.sets[s];
-      Materials::with(set.material, [&]<class M>() {
-        if constexpr (Viscous<M>) {
-          const std::size_t field = world.field_of(set);
-          const gpu::PassOutput::Arena out = arena(of_field(nodes, field));
-          launch(gpu::ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
-                                     input_of(world, s), out, memory_.block_speeds.data(), static_cast<int>(field)},
-                 static_cast<int>(stencil_blocks_.size()));
-          memory_.block_speeds.download(speeds);
-          for (const float speed : speeds) fastest = std::max(fastest, speed);
-        }
-      });
-    }
-    return fastest;
-  }
-  /// m/s: the largest speed that a particle gathers.
-  double fastest_particle(World<float>& world) {
-    for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(nodes, f)].upload(world.grid.field(f));
-    memory_.block_speeds.resize(stencil_blocks_.size());
-    for (std::size_t s = 0; s < world.sets.size(); ++s)
-      launch(gpu::SpeedPass{input_of(world, s), memory_.block_speeds.data(), s == 0},
-             static_cast<int>(stencil_blocks_.size()));
-    std::vector<float> speeds(stencil_blocks_.size());
-    memory_.block_speeds.download(speeds);
-    float fastest2 = 0;
-    for (const float speed2 : speeds) fastest2 = std::max(fastest2, speed2);
-    return std::sqrt(static_cast<double>(fastest2));
-  }
-
-  template <class K>
-  void launch(const K& kernel, int blocks) {
-    if (blocks == 0) return;
-    device_->launch(gpu::Kernels::number_of<K>(), &kernel, blocks);
-  }
-
   std::unique_ptr<gpu::Device> device_;
   std::string name_, isa_;
   gpu::Memory memory_;
   Obstacles obstacles_;
   Regroup<float> regroup_;
   GridUpdate<float> update_;
+  gpu::ParticlePasses passes_;
+  gpu::ParticleSort sort_;
+  gpu::GridVisit visit_;
   std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
   GridFields<float> next_;                     ///< its block list stays empty
-  std::array<bool, targets> written_{};        ///< whether a set of this pass has written to a target's arenas
-  /// The parts of the matter of which the World's arrays are current. Nodes always are.
+  bool based_ = false;                         ///< whether Memory::base is current
+  /// The parts of the matter of which the World's arrays are current, and whether the device's nodes
+  /// are. Its particles always are.
   MatterFields home_ = MatterFields::all;
+  bool nodes_there_ = false;
   World<float> copy_;  ///< for at_home()
 };
 

@@ -12,7 +12,7 @@ struct SumArenas {
   static constexpr int threads = block_nodes;
   struct Shared {};
 
-  const NodeCounts* counts;    ///< `arena_nodes` an arena
+  const NodeCounts* counts;    ///< `arena_nodes` an arena; null where none was written
   const std::uint32_t* first;  ///< by block of the grid, into `arena` and `corner`, and the end
   const std::int32_t* arena;   ///< block of particles
   const std::int32_t* corner;  ///< which of its eight corners
@@ -27,7 +27,7 @@ struct SumArenas {
     const int g = block.index();
     block.each_thread([&](int n) {
       double sum[4]{};
-      for (std::uint32_t s = first[g]; s < first[g + 1]; ++s) {
+      for (std::uint32_t s = first[g]; counts && s < first[g + 1]; ++s) {
         const BlockLoad& load = loads[arena[s]];
         const ScatterUnits units = field == 2 ? mixture_units(load, bounds) : field_units(load, field, bounds);
         const NodeCounts& count = counts[std::int64_t{arena[s]} * arena_nodes + number_in_arena(corner[s], n)];

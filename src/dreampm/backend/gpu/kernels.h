@@ -4,7 +4,10 @@
 #include <type_traits>
 
 #include "dreampm/backend/gpu/grid_sum.h"
+#include "dreampm/backend/gpu/image_layers.h"
+#include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/viscous_pass.h"
+#include "dreampm/backend/gpu/wall_gaps.h"
 
 namespace dreampm::gpu {
 
@@ -55,9 +58,15 @@ struct MaterialKernels {
   using Stages = std::conditional_t<Viscous<M>, KernelList<ViscousPass<M>>, KernelList<>>;
   using Type = typename JoinLists<Steps, Relaxing, Stages>::Type;
 };
+using SortKernels =
+    KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
+/// Those of the grid, and sums.
+using GridKernels =
+    KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, ClearGaps, MeasureGaps,
+               FindWallGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
-    typename JoinLists<KernelList<AddUp, SumArenas, SpeedPass>, typename MaterialKernels<M>::Type...>::Type;
+    typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 

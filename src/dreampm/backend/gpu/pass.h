@@ -1,7 +1,8 @@
 // One pass over the particles of a set on a device: gather, law, move, scatter. A block of threads
 // takes a block of particles; physics/particle.h says what happens to one.
 #pragma once
-#include "dreampm/backend/gpu/arena.h"
+#include "dreampm/backend/gpu/add_up.h"
+#include "dreampm/backend/gpu/arena_memory.h"
 #include "dreampm/backend/gpu/block.h"
 #include "dreampm/backend/gpu/pass_sums.h"
 #include "dreampm/backend/pass_limits.h"
@@ -37,108 +38,11 @@ struct PassInput {
 /// What particles become and what they give to their nodes.
 struct PassOutput {
   ParticleColumns particles;
-  // Arenas: `arena_nodes` a block of particles, each with whether this set is the first that writes
-  // there; others add.
-  struct Arena {
-    NodeCounts* counts;  ///< or null
-    bool first;
-  };
-  Arena field, velocity_old, stress, mixture;
+  ArenaOutput field, velocity_old, stress, mixture;
   BlockSums* sums;  ///< by block of particles
   // Columns for output, as in Motion, or null.
   float *velocity, *gradient, *energy, *volume_ratio;
 };
-
-/// Sums of one field in the memory of a block of threads.
-struct ArenaSums {
-  std::int32_t x[arena_room], y[arena_room], z[arena_room], m[arena_room];
-};
-
-/// Adds what a particle gives to a field: q and slopes of `scatter_terms`, and `mass` alike. The
-/// sum over its nodes is exactly that of the particle: the middle node, whose weight is the
-/// largest, gets what rounding left over. Without that, small weights would round down more often
-/// than up.
-template <class Block>
-DM_FN void scatter_counts(const Stencil<float>& s, const Vec3<float>& q, const Vec3<float> (&slope)[3], float mass,
-                          const ScatterUnits& units, ArenaSums& sums) {
-  using Quad = Node<float>;
-  const Quad whole{q.x * units.momentum, q.y * units.momentum, q.z * units.momentum, mass * units.mass};
-  Quad slopes[3];
-  for (int a = 0; a < 3; ++a)
-    slopes[a] = {slope[a].x * units.momentum, slope[a].y * units.momentum, slope[a].z * units.momentum, 0};
-  const int first = place_in_arena(s.node(0) + 1, s.node(1) + 1, s.node(2) + 1);
-  NodeCounts left{Block::nearest(whole.x), Block::nearest(whole.y), Block::nearest(whole.z), Block::nearest(whole.m)};
-  scatter_terms(s, whole, slopes, [&](int i, int j, int k, const Quad& term, float w) {
-    if (i == 1 && j == 1 && k == 1) return;
-    const int at = first + place_in_arena(i, j, k);
-    const NodeCounts n{Block::nearest(term.x * w), Block::nearest(term.y * w), Block::nearest(term.z * w),
-                       Block::nearest(term.m * w)};
-    Block::add(sums.x[at], n.x), Block::add(sums.y[at], n.y), Block::add(sums.z[at], n.z), Block::add(sums.m[at], n.m);
-    left.x -= n.x, left.y -= n.y, left.z -= n.z, left.m -= n.m;
-  });
-  const int at = first + place_in_arena(1, 1, 1);
-  Block::add(sums.x[at], left.x), Block::add(sums.y[at], left.y), Block::add(sums.z[at], left.z);
-  Block::add(sums.m[at], left.m);
-}
-
-/// The largest that a particle adds to a node of its own over its weight there and its mass [m/s].
-DM_FN float scattered_speed(const Vec3<float>& q, const Vec3<float> (&slope)[3], float mass) {
-  float most = 0;
-  for (int c = 0; c < 3; ++c)
-    most = max(most, abs(q[c]) + 1.5f * (abs(slope[0][c]) + abs(slope[1][c]) + abs(slope[2][c])));
-  return most / mass;
-}
-
-/// The nodes of a block of particles, which a pass copies to where its threads find them fast.
-struct NodeCopy {
-  float x[arena_room], y[arena_room], z[arena_room], m[arena_room];
-};
-
-/// Thread `t`'s share of the copy; nodes to which no particle can come are zero.
-template <int threads>
-DM_FN void copy_nodes(int t, const std::int32_t* stencil_blocks, const Node<float>* field, NodeCopy& to) {
-  for (int n = t; n < arena_nodes; n += threads) {
-    const ArenaNode at(n);
-    const std::int32_t b = stencil_blocks[at.corner()];
-    const Node<float> node = b < 0 ? Node<float>{} : field[std::int64_t{b} * block_nodes + at.in_block()];
-    const int place = at.place();
-    to.x[place] = node.x, to.y[place] = node.y, to.z[place] = node.z, to.m[place] = node.m;
-  }
-}
-/// The rows of velocities around a particle, as gather() takes them.
-DM_FN auto velocity_rows(const Stencil<float>& s, const NodeCopy& nodes) {
-  const int first = place_in_arena(s.node(0) + 1, s.node(1) + 1, s.node(2) + 1);
-  return [first, &nodes](int i, int j) {
-    NodeRow<Vec3<float>> row;
-    for (int k = 0; k < 3; ++k) {
-      const int at = first + place_in_arena(i, j, k);
-      row.n[k] = {nodes.x[at], nodes.y[at], nodes.z[at]};
-    }
-    return row;
-  };
-}
-
-/// Thread `t`'s share.
-template <int threads>
-DM_FN void clear(int t, ArenaSums& sums) {
-  for (int n = t; n < arena_room; n += threads) sums.x[n] = sums.y[n] = sums.z[n] = sums.m[n] = 0;
-}
-/// Thread `t`'s share of what goes to the arena of block `b` of the particles. Returns the largest
-/// count of mass among it.
-template <int threads>
-DM_FN std::int32_t write(int t, int b, const ArenaSums& sums, const PassOutput::Arena& to) {
-  std::int32_t most = 0;
-  if (!to.counts) return most;
-  for (int n = t; n < arena_nodes; n += threads) {
-    const int at = ArenaNode(n).place();
-    NodeCounts& node = to.counts[std::int64_t{b} * arena_nodes + n];
-    NodeCounts count{sums.x[at], sums.y[at], sums.z[at], sums.m[at]};
-    if (!to.first) count.x += node.x, count.y += node.y, count.z += node.z, count.m += node.m;
-    node = count;
-    if (count.m > most) most = count.m;
-  }
-  return most;
-}
 
 /// `relaxes`: whether this step relaxes the volume of liquids. `plain`: the set keeps no
 /// velocities, and there is no mixture, no collider and no stage of viscosity. Whether somebody
@@ -191,8 +95,9 @@ struct Pass {
         advance<Block>(b, p, shared, found[t]);
     });
     block.each_thread([&](int t) {
-      const auto most = static_cast<float>(write<threads>(t, b, shared.arena.field, out.field));
-      found[t].scattered.mass = most / field_units(in.loads[b], field, bounds).mass;
+      const Written written = write<threads>(t, b, shared.arena.field, out.field);
+      found[t].scattered.mass = static_cast<float>(written.most) / field_units(in.loads[b], field, bounds).mass;
+      found[t].counts -= written.counts;
       if constexpr (!plain) {
         write<threads>(t, b, shared.arena.others.velocity_old, out.velocity_old);
         write<threads>(t, b, shared.arena.others.stress, out.stress);
@@ -200,14 +105,13 @@ struct Pass {
       }
     });
     block.each_thread([&](int t) { shared.sums[t] = found[t]; });
-    for (int half = threads / 2; half > 0; half /= 2)
-      block.each_thread([&](int t) {
-        if (t < half) shared.sums[t].add(shared.sums[t + half]);
-      });
+    add_up_threads<threads>(block, shared.sums);
     block.each_thread([&](int t) {
       if (t != 0) return;
       BlockSums sum = BlockSums::none();
       sum.add(shared.sums[0]);
+      // Where a node had more than was assumed, its count may have begun anew.
+      if (sum.counts != 0) sum.scattered.mass = in.loads[b].mass[field];
       out.sums[b] = sum;
     });
   }
@@ -350,6 +254,7 @@ struct Pass {
     const ScatterUnits units = field_units(in.loads[b], field, bounds);
     found.scattered.speed = max(scattered_speed(s.q, s.slope, set.mass), found.scattered.speed);
     scatter_counts<Block>(stencil, s.q, s.slope, set.mass, units, shared.arena.field);
+    found.counts += Block::nearest(set.mass * units.mass);
     if constexpr (!plain) {
       auto& others = shared.arena.others;
       if (out.velocity_old.counts && set.transfer.keeps_velocity()) {

@@ -15,11 +15,13 @@ struct PassSums {
   N swollen;                             ///< by volume at rest [1]
   N shifted[3], turned[3];               ///< cells, and cells m/s
   ScatterBounds scattered;
+  /// Counts of mass that particles gave, less those that came to nodes: not 0 where a node's ran over.
+  std::int64_t counts;
   std::uint32_t pushed;
   bool finite;
 
   static DM_FN PassSums none() {
-    return {0, 0, 1e30f, -1e30f, 0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, true};
+    return {0, 0, 1e30f, -1e30f, 0, 0, 0, 0, 0, {0, 0, 0}, {0, 0, 0}, {0, 0, 0, 0}, 0, 0, true};
   }
 
   /// Adds one particle, now at `u`.
@@ -59,6 +61,7 @@ struct PassSums {
     kinetic += b.kinetic, viscous += b.viscous, plastic += b.plastic, relaxed += b.relaxed, swollen += b.swollen;
     for (int a = 0; a < 3; ++a) shifted[a] += b.shifted[a], turned[a] += b.turned[a];
     scattered = largest(scattered, b.scattered);
+    counts += b.counts;
     pushed += b.pushed;
     finite = finite && b.finite;
   }
@@ -69,32 +72,5 @@ struct PassSums {
 using ParticleSums = PassSums<float>;
 /// Of a block of particles, and of all of a set.
 using BlockSums = PassSums<double>;
-
-/// Adds up the sums of `count` blocks, in an order that depends on nothing else.
-struct AddUp {
-  static constexpr int threads = 128;
-  struct Shared {
-    BlockSums sums[threads];
-  };
-  const BlockSums* from;
-  BlockSums* to;  ///< one
-  int count;
-
-  template <class Block>
-  DM_FN void operator()(Block& block, Shared& shared) const {
-    block.each_thread([&](int t) {
-      BlockSums sum = BlockSums::none();
-      for (int b = t; b < count; b += threads) sum.add(from[b]);
-      shared.sums[t] = sum;
-    });
-    for (int half = threads / 2; half > 0; half /= 2)
-      block.each_thread([&](int t) {
-        if (t < half) shared.sums[t].add(shared.sums[t + half]);
-      });
-    block.each_thread([&](int t) {
-      if (t == 0) *to = shared.sums[0];
-    });
-  }
-};
 
 }  // namespace dreampm::gpu

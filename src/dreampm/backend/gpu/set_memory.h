@@ -13,6 +13,24 @@
 
 namespace dreampm::gpu {
 
+/// The fields of the grid that particles give to, in the order of the arenas; those of the solids'
+/// field are one further.
+enum Target : std::size_t { nodes, solids, old_nodes, old_solids, stress_nodes, stress_solids, mixture_share, targets };
+constexpr std::size_t of_field(Target first, std::size_t field) { return first + field; }
+/// The field that decides the units of a target, as SumArenas takes it.
+constexpr int unit_field(std::size_t target) { return target == mixture_share ? 2 : static_cast<int>(target % 2); }
+inline Nodes<float>& host_field(GridFields<float>& grid, std::size_t target) {
+  const std::size_t f = target % 2;
+  if (target == mixture_share) return grid.mixture;
+  return target < old_nodes ? grid.field(f) : target < stress_nodes ? grid.velocity_old[f] : grid.stress[f];
+}
+/// The target whose nodes those are.
+inline std::size_t target_of(GridFields<float>& grid, const Nodes<float>& nodes) {
+  std::size_t t = 0;
+  while (&host_field(grid, t) != &nodes) ++t;
+  return t;
+}
+
 /// What the matter of a block of particles weighs and takes.
 inline BlockLoad load_of(const World<float>& world, std::size_t block) {
   std::array<double, 2> mass{}, one_mass{};
@@ -71,6 +89,14 @@ class SetColumns {
     while (state.size() < columns) state.emplace_back(*device_);
     while (state.size() > columns) state.pop_back();
   }
+  /// Leaves the last rows out.
+  void shorten(std::size_t size) {
+    const auto shorten = [size](std::vector<Buffer<float>>& all) {
+      for (Buffer<float>& column : all)
+        if (column.size() > size) column.resize(size);
+    };
+    shorten(u), shorten(own_velocity), shorten(state);
+  }
   ParticleColumns pointers(bool own) const {
     ParticleColumns to{};
     for (std::size_t a = 0; a < 3; ++a)
@@ -95,6 +121,9 @@ class SetMemory {
       : now(device),
         next(device),
         block_start(device),
+        next_block_start(device),
+        id(device),
+        next_id(device),
         velocity_(device),
         gradient_(device),
         energy_(device),
@@ -102,7 +131,8 @@ class SetMemory {
     for (int c = 0; c < 4; ++c) distance.emplace_back(device);
   }
   SetColumns now, next;
-  Buffer<std::uint32_t> block_start;
+  Buffer<std::uint32_t> block_start, next_block_start;  ///< `next`: room for a sort
+  Buffer<std::uint32_t> id, next_id;
   std::vector<Buffer<float>> distance;  ///< as PassInput::distance
 
   /// Takes over what a pass made. `own`: whether that has velocities of their own.
@@ -148,6 +178,19 @@ class SetMemory {
   Buffer<float> energy_, volume_ratio_;
 };
 
+/// Ranges that are one after the other, few enough that the host can add up what comes of them:
+/// each of `least` entries or more, and at most `most` of them.
+inline void add_ranges(std::uint32_t begin, std::uint32_t end, std::vector<Range>& to) {
+  constexpr std::uint32_t least = 512, most = 48;
+  const std::uint32_t count = std::min(most, (end - begin + least - 1) / least);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto at = [&](std::uint32_t n) {
+      return begin + static_cast<std::uint32_t>(std::uint64_t{end - begin} * n / count);
+    };
+    to.push_back({at(i), at(i + 1)});
+  }
+}
+
 /// For each block of the grid the arenas that hold its nodes, as SumArenas takes them: in the order
 /// of the blocks of particles, and of their corners.
 class SourceLists {
@@ -186,22 +229,28 @@ class Memory {
         base(device),
         block_sums(device),
         totals(device),
+        block_ranges(device),
         block_speeds(device),
         device_(&device) {
-    for (int f = 0; f < fields; ++f) nodes.emplace_back(device), arenas.emplace_back(device);
+    for (std::size_t t = 0; t < targets; ++t) nodes.emplace_back(device), arenas.emplace_back(device);
   }
-  static constexpr int fields = 7;  ///< of the grid, that particles give to
   std::vector<SetMemory> sets;
   SourceLists sources;
   Buffer<std::int32_t> stencil_blocks;
   Buffer<BlockWalls<float>> walls;
   Buffer<BlockLoad> loads;
   Buffer<Node<float>> clearance, base;
-  std::vector<Buffer<Node<float>>> nodes;  ///< by field
-  std::vector<Buffer<NodeCounts>> arenas;  ///< by field
+  std::vector<Buffer<Node<float>>> nodes;  ///< by Target
+  std::vector<Buffer<NodeCounts>> arenas;  ///< by Target
   Buffer<BlockSums> block_sums, totals;
+  Buffer<Range> block_ranges;  ///< of block_sums, that are added up
   Buffer<float> block_speeds;
 
+  GridPointers grid_pointers() {
+    return {{nodes[Target::nodes].data(), nodes[solids].data()},
+            {nodes[old_nodes].data(), nodes[old_solids].data()},
+            nodes[mixture_share].data()};
+  }
   void resize_sets(std::size_t count) {
     while (sets.size() < count) sets.emplace_back(*device_);
     while (sets.size() > count) sets.pop_back();

@@ -21,7 +21,7 @@ struct ViscousPass {
   SetStep<float> step;
   ScatterBounds bounds;
   PassInput in;
-  PassOutput::Arena out;
+  ArenaOutput out;
   float* speed;  ///< by block of particles: the largest scattered_speed
   int field;
 

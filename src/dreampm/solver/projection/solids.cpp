@@ -312,7 +312,8 @@ typename SolidSteps<R>::Kinetic SolidSteps<R>::run(World<R>& world, const std::v
     lock(body, to.twist);
   }
   kinetic.last = this->kinetic();
-  backend_->download(solids_, motion_, MatterFields::particles);
+  // All, so that the backend has nothing left for who asks it for the whole world.
+  backend_->download(solids_, motion_, MatterFields::all);
   take_out(pushes);
   give_back(world);
   return kinetic;

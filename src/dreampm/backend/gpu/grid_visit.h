@@ -1,0 +1,61 @@
+// The visit of the nodes of a World in a device's memory, in place of GridUpdate.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "dreampm/backend/backend.h"
+#include "dreampm/backend/common.h"
+#include "dreampm/backend/gpu/launch.h"
+#include "dreampm/backend/gpu/set_memory.h"
+
+namespace dreampm::gpu {
+
+class GridVisit {
+ public:
+  explicit GridVisit(Device& device);
+  /// True if a device can visit the nodes of this world: the host does where colliders, rigid
+  /// bodies, force fields, a second field or stages of viscosity act on them.
+  static bool takes(const World<float>& world, const Obstacles& obstacles);
+
+  /// Must be called after every change of the grid's block list or of the particles' order.
+  void prepare(const World<float>& world, const MirrorWalls<float>& images, const ContactGaps& gaps);
+  /// As Backend::grid_update.
+  GridStats operator()(const World<float>& world, Memory& memory, double dt);
+  /// As MirrorWalls::add_image_mass.
+  void add_image_mass(const World<float>& world, Memory& memory, double dt);
+
+ private:
+  void find_entries(const World<float>& world, const MirrorWalls<float>& images);
+  void measure_gaps(const World<float>& world, Memory& memory);
+  VisitInput input(const World<float>& world, Memory& memory, double dt);
+  LayersInput layers(int axis) const;
+  GridStats results(const World<float>& world, bool damped);
+  template <class K>
+  void launch(const K& kernel, std::size_t blocks) {
+    dreampm::gpu::launch(*device_, kernel, blocks);
+  }
+
+  Device* device_;
+  bool folds_ = false, gapped_[2] = {};
+  Buffer<VisitBlock> blocks_;
+  Buffer<std::int32_t> entries_;
+  Buffer<std::uint32_t> waiting_;
+  Buffer<ImageLayer> layers_;
+  std::array<std::uint32_t, 4> axes_{};  ///< where the layers of an axis begin
+  Buffer<std::uint8_t> folded_;
+  // Sums, the ranges of them that are added up, and what comes of these.
+  Buffer<GridTerms> sums_;
+  Buffer<SourceTerms> given_, damped_;
+  Buffer<Range> block_ranges_, wall_ranges_;
+  std::vector<int> side_of_range_;
+  Buffer<std::byte> parts_;
+  std::vector<std::byte> home_;
+  // Gaps before walls.
+  Buffer<NearWalls> near_;
+  Buffer<WallPlane> planes_;
+  Buffer<std::int32_t> gaps_of_, walls_of_, gaps_;
+  Buffer<float> gap_;
+};
+
+}  // namespace dreampm::gpu

@@ -1,0 +1,229 @@
+// Sorting particles into blocks and cells on a device: state/particle_move.h says where each goes,
+// state/regroup_plan.h which blocks there are. Threads may come in any order, and so may the
+// particles of a cell at first; they are put in the order in which they were before.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/backend/gpu/block.h"
+#include "dreampm/backend/gpu/pass.h"
+#include "dreampm/state/particle_move.h"
+
+namespace dreampm::gpu {
+
+/// The particles of a set before a sort.
+struct SortInput {
+  const float* u[3];
+  const std::uint32_t* block_start;  ///< by block of particles, and the end
+  std::uint8_t alike[28];            ///< as Alike
+  static constexpr int neighbors = 27;
+
+  DM_FN Vec3<float> place(std::uint32_t p) const { return {u[0][p], u[1][p], u[2][p]}; }
+  DM_FN int way(const Vec3<float>& at) const { return alike[neighbor_of(at)]; }
+  /// Calls body(particle) for thread `t`'s share of a block's particles.
+  template <int threads, class Body>
+  DM_FN void each(int block, int t, const Body& body) const {
+    const std::uint32_t end = block_start[block + 1];
+    for (std::uint32_t p = block_start[block] + static_cast<std::uint32_t>(t); p < end; p += threads) body(p);
+  }
+};
+
+/// Counts the particles of each block that move to each of the 27 around it.
+struct CountMoves {
+  static constexpr int threads = 128;
+  struct Shared {
+    std::int32_t counts[SortInput::neighbors];
+  };
+  SortInput in;
+  std::int32_t* counts;  ///< 27 a block
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared& shared) const {
+    const int b = block.index();
+    block.each_thread([&](int t) {
+      if (t < SortInput::neighbors) shared.counts[t] = 0;
+    });
+    block.each_thread([&](int t) {
+      in.each<threads>(b, t, [&](std::uint32_t p) { Block::add(shared.counts[in.way(in.place(p))], 1); });
+    });
+    block.each_thread([&](int t) {
+      if (t < SortInput::neighbors) counts[std::int64_t{b} * SortInput::neighbors + t] = shared.counts[t];
+    });
+  }
+};
+
+/// Where particles go: the new block by old block and neighbor, 27 a block; -1 of those that leave.
+struct SortTargets {
+  const std::int32_t* block;
+
+  /// The number of a particle's cell among those of all new blocks, in their order; -1 if it leaves.
+  DM_FN std::int64_t cell(const SortInput& in, int old_block, const Vec3<float>& at) const {
+    const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + in.way(at)];
+    return to < 0 ? -1 : std::int64_t{to} * block_nodes + turn_of(at);
+  }
+};
+
+/// Sets counters to zero.
+struct ClearCounts {
+  static constexpr int threads = 128;
+  struct Shared {};
+  std::int32_t* counts;
+  std::int64_t size;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    block.each_thread([&](int t) {
+      const std::int64_t i = std::int64_t{block.index()} * threads + t;
+      if (i < size) counts[i] = 0;
+    });
+  }
+};
+
+/// Counts the particles of each cell of the new blocks, and gives each a number in its cell.
+struct CountCells {
+  static constexpr int threads = 128;
+  struct Shared {};
+  SortInput in;
+  SortTargets targets;
+  std::int32_t* counts;  ///< by cell, from 0
+  std::int32_t* number;  ///< by particle
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    const int b = block.index();
+    block.each_thread([&](int t) {
+      in.each<threads>(b, t, [&](std::uint32_t p) {
+        const std::int64_t cell = targets.cell(in, b, in.place(p));
+        if (cell >= 0) number[p] = Block::count(counts[cell]);
+      });
+    });
+  }
+};
+
+/// The place where the particles of each cell begin, and which cells have any.
+struct StartCells {
+  static constexpr int threads = block_nodes;
+  struct Shared {
+    std::int32_t counts[threads];
+  };
+  const std::int32_t* counts;        ///< by cell
+  const std::uint32_t* block_start;  ///< of the new blocks
+  std::uint32_t* start;              ///< by cell
+  std::uint32_t* cells;              ///< two a block: a bit for each cell with particles, by node_index()
+  bool first;                        ///< else those of other sets are there already
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared& shared) const {
+    const int b = block.index();
+    block.each_thread([&](int t) { shared.counts[t] = counts[std::int64_t{b} * block_nodes + t]; });
+    block.each_thread([&](int t) {
+      std::uint32_t at = block_start[b];
+      for (int c = 0; c < t; ++c) at += static_cast<std::uint32_t>(shared.counts[c]);
+      start[std::int64_t{b} * block_nodes + t] = at;
+      if (t > 1) return;
+      std::uint32_t any = 0;
+      for (int c = 0; c < block_nodes; ++c)
+        if (const int cell = cell_at(c); shared.counts[c] > 0 && cell / 32 == t) any |= 1u << cell % 32;
+      cells[2 * b + t] = first ? any : cells[2 * b + t] | any;
+    });
+  }
+};
+
+/// The former place of each particle, those of a cell in any order.
+struct FillPlaces {
+  static constexpr int threads = 128;
+  struct Shared {};
+  SortInput in;
+  SortTargets targets;
+  const std::uint32_t* start;   ///< by cell
+  const std::int32_t* number;   ///< by particle
+  std::uint32_t* from;          ///< by new place
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    const int b = block.index();
+    block.each_thread([&](int t) {
+      in.each<threads>(b, t, [&](std::uint32_t p) {
+        const std::int64_t cell = targets.cell(in, b, in.place(p));
+        if (cell >= 0) from[start[cell] + static_cast<std::uint32_t>(number[p])] = p;
+      });
+    });
+  }
+};
+
+/// Puts the former places of each cell's particles in order.
+struct SortPlaces {
+  static constexpr int threads = block_nodes;
+  struct Shared {};
+  const std::uint32_t* start;        ///< by cell
+  const std::uint32_t* block_start;  ///< of the new blocks
+  std::uint32_t* from;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    const int b = block.index();
+    block.each_thread([&](int t) {
+      const std::int64_t cell = std::int64_t{b} * block_nodes + t;
+      sort(from + start[cell], (t + 1 < block_nodes ? start[cell + 1] : block_start[b + 1]) - start[cell]);
+    });
+  }
+
+ private:
+  /// Shell 1959 (Commun. ACM 2:30), with the gaps of Ciura 2001: a cell has a few particles, and a
+  /// crowded one is no disaster.
+  static DM_FN void sort(std::uint32_t* of, std::uint32_t count) {
+    constexpr std::uint32_t gaps[] = {701, 301, 132, 57, 23, 10, 4, 1};
+    for (const std::uint32_t gap : gaps)
+      for (std::uint32_t i = gap; i < count; ++i) {
+        const std::uint32_t one = of[i];
+        std::uint32_t to = i;
+        for (; to >= gap && of[to - gap] > one; to -= gap) of[to] = of[to - gap];
+        of[to] = one;
+      }
+  }
+};
+
+/// Brings all columns of a set to their new places.
+struct MoveParticles {
+  static constexpr int threads = 128;
+  struct Shared {};
+  const std::uint32_t* from;
+  std::uint32_t size, columns;  ///< particles, and columns of state
+  ParticleColumns in, out;
+  const std::uint32_t* id_in;
+  std::uint32_t* id_out;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    block.each_thread([&](int t) {
+      const std::uint32_t to = static_cast<std::uint32_t>(block.index()) * threads + static_cast<std::uint32_t>(t);
+      if (to >= size) return;
+      const std::uint32_t p = from[to];
+      id_out[to] = id_in[p];
+      for (int a = 0; a < 3; ++a) {
+        out.u[a][to] = seen_there(in.u[a][p]);
+        if (in.own_velocity[a]) out.own_velocity[a][to] = in.own_velocity[a][p];
+      }
+      for (std::uint32_t c = 0; c < columns; ++c) out.state[c][to] = in.state[c][p];
+    });
+  }
+};
+
+/// Brings the nodes of a field to the new places of their blocks; those of new blocks are zero.
+struct CarryNodes {
+  static constexpr int threads = block_nodes;
+  struct Shared {};
+  const std::int32_t* before;  ///< by new block: its number before, or -1
+  const Node<float>* from;     ///< null where the field is new
+  Node<float>* to;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    const std::int32_t old = before[block.index()];
+    block.each_thread([&](int t) {
+      to[std::int64_t{block.index()} * block_nodes + t] =
+          from && old >= 0 ? from[std::int64_t{old} * block_nodes + t] : Node<float>{};
+    });
+  }
+};
+
+}  // namespace dreampm::gpu

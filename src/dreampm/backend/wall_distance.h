@@ -1,0 +1,25 @@
+// How far a particle is from a wall of the box, in the numbers of its block. Compilers of device
+// code read it too.
+#pragma once
+#include "dreampm/physics/node.h"
+
+namespace dreampm {
+
+/// Cells from a particle at which the spline of a node ends.
+inline constexpr double kernel_reach = 1.5;
+
+/// The first node of a particle's stencil along an axis, counted from the first that its block
+/// reaches. `u`: its place, as ParticleSet::u.
+template <class R>
+DM_FN int first_node(R u) {
+  const int towards_zero = static_cast<int>(u);
+  return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
+}
+
+/// The distance [cells] from the wall of `side`, whose nodes lie in `plane`, counted likewise.
+template <class R>
+DM_FN R distance_from_wall(R u, int plane, int side) {
+  return (u + static_cast<R>(kernel_reach - plane)) * static_cast<R>(inward_of(side));
+}
+
+}  // namespace dreampm
