@@ -67,6 +67,21 @@ colliders:
   ball: {shape: {sphere: {radius: 0.04}, center: [0.1, 0.04, 0.08]}, type: separate, friction: 0.4}
   plate: {shape: {box: {size: [0.02, 0.14, 0.16]}, center: [0.2, 0.07, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
 )"},
+    {"water over a ball, in front of a block that moves", R"(
+materials: {water: {type: newtonian}}
+bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.16]}}}}
+colliders:
+  ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, type: stick}
+  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
+)"},
+    {"the same by contact at nodes alone", R"(
+materials: {water: {type: newtonian}}
+bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.16]}}}}
+colliders:
+  ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, type: stick}
+  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
+)",
+     6, 0.03, "", ", surface_contact: false"},
     {"a box that floats", R"(
 materials: {water: {type: newtonian}}
 bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}}

@@ -23,6 +23,13 @@ BoxWalls<R> box_walls(const World<R>& world, std::size_t field) {
   return w;
 }
 
+/// True if contact of that node acts at the node itself: it is too deep inside for contact at the
+/// surface, or is inside where there is none.
+template <class R>
+bool acts_within(const World<R>& world, const ObstacleNode& o) {
+  return o.deep || (o.inside && !world.settings.surface_contact);
+}
+
 /// The results of the visit of one block.
 struct BlockStats {
   enum Source : std::size_t { first_wall = 0, damping = 6, fields = 7, first_collider = 8 };
@@ -260,7 +267,7 @@ class BlockVisit {
     const bool frictional = !world_.holds_liquid(nodes == field(0) ? 0 : 1);
     for (const ObstacleNode& o : near_) {
       Node<R>& node = nodes[o.node];
-      if (!(o.deep || (o.inside && !world_.settings.surface_contact)) || !has_mass(node)) continue;
+      if (!acts_within(world_, o) || !has_mass(node)) continue;
       const Collider& collider = world_.colliders[o.collider];
       const Vec3<R> before = velocity(node), surface = static_cast<Vec3<R>>(o.velocity);
       set_velocity(node, contact(before - surface, static_cast<Vec3<R>>(o.normal), collider.contact(),

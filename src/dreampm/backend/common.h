@@ -97,6 +97,14 @@ class GridUpdate {
   const MirrorWalls<R>& images() const;
   ContactGaps& gaps();
 
+  // Contact with surfaces alone, for who visits the nodes elsewhere.
+
+  /// The grid blocks that it looks at and may change.
+  const std::vector<std::uint32_t>& surface_blocks() const;
+  /// Contact of the first field with the surfaces of colliders, in a step of `dt`. The nodes of
+  /// those blocks hold velocities; no others are looked at. Adds the impulses of colliders.
+  void meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found);
+
  private:
   void begin_stages(const World<R>& world, const GridStats& found);
   void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const GridFields<R>& momenta);

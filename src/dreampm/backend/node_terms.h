@@ -30,11 +30,11 @@ template <class R>
 struct NodeConstants {
   BoxWalls<R> walls[2];  ///< by field
   Vec3<R> kick;
-  R keep;        ///< of the velocity, by damping
-  R diffusion;   ///< dt/dx^2 [s/m^2]
-  R dx;          ///< m
-  R per_dt;      ///< dx/dt [m/s]
-  bool skin;     ///< true if a wall slows liquids by its boundary layer
+  R keep;         ///< of the velocity, by damping
+  R diffusion;    ///< dt/dx^2 [s/m^2]
+  R dx;           ///< m
+  R per_dt;       ///< dx/dt [m/s]
+  bool skin;      ///< true if a wall slows liquids by its boundary layer
   bool slows[6];  ///< the walls that do, where they are asked to
   // Viscous contact, where viscosity acts in stages: up to this drag it is one of their forces;
   // what is left of it acts on its own, for this part of the step. It is rare: a node with next to

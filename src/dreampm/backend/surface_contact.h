@@ -39,6 +39,12 @@ class SurfaceContact {
   /// True if contact may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
 
+  /// The grid blocks that it looks at and may change, into `blocks`.
+  void find_blocks(std::vector<std::uint32_t>& blocks) const {
+    blocks.clear();
+    for (const NodeBlock& node_block : node_blocks_) blocks.push_back(static_cast<std::uint32_t>(node_block.block));
+  }
+
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
   /// colliders'. Adds the reactions of colliders to `found`, by grid block: of a node at several
   /// colliders to the one that takes most of its kernel. Matter may approach as fast as closes its

@@ -87,7 +87,7 @@ void RegroupPlan<R>::find_sources(World<R>& world) {
   });
 }
 
-#define DM_INSTANTIATE(R)                   \
+#define DM_INSTANTIATE(R)                      \
   template Alike first_alike(const World<R>&); \
   template class RegroupPlan<R>;
 DM_INSTANTIATE(float)

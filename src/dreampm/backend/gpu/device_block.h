@@ -9,12 +9,12 @@
 #define DM_KERNEL __attribute__((global))
 #define DM_SHARED __attribute__((shared))
 #define DM_DEVICE __attribute__((device)) __attribute__((always_inline)) inline
-#define DM_BOUNDS(threads) __attribute__((launch_bounds(threads)))
+#define DM_BOUNDS(threads, blocks) __attribute__((launch_bounds(threads, blocks)))
 #else
 #define DM_KERNEL __global__
 #define DM_SHARED __shared__
 #define DM_DEVICE __device__ __forceinline__
-#define DM_BOUNDS(threads) __launch_bounds__(threads)
+#define DM_BOUNDS(threads, blocks) __launch_bounds__(threads, blocks)
 #endif
 
 namespace dreampm::gpu {
@@ -81,9 +81,18 @@ class DeviceBlock {
   static DM_DEVICE std::int32_t nearest(float value) { return to_nearest(value); }
 };
 
+/// How many blocks of a kernel a multiprocessor should hold, which bounds their registers.
+template <class K>
+constexpr int resident_blocks() {
+  if constexpr (requires { K::resident; })
+    return K::resident;
+  else
+    return 1;
+}
+
 /// The entry of a kernel.
 template <class K>
-DM_KERNEL void DM_BOUNDS(K::threads) run(const K kernel) {
+DM_KERNEL void DM_BOUNDS(K::threads, resident_blocks<K>()) run(const K kernel) {
   DM_SHARED typename K::Shared shared;
   DeviceBlock block;
   kernel(block, shared);

@@ -57,7 +57,7 @@ class Gpu final : public Backend<float> {
   void colliders_moved(const World<float>& world) override {
     obstacles_.prepare(world);
     update_.colliders_moved(world, obstacles_);
-    if (gpu::GridVisit::takes(world, obstacles_)) visit_.prepare(world, update_.images(), update_.gaps());
+    if (gpu::GridVisit::takes(world, obstacles_)) visit_.colliders_moved(world, obstacles_);
     upload_obstacles(world);
   }
 
@@ -73,7 +73,7 @@ class Gpu final : public Backend<float> {
     if (gpu::GridVisit::takes(world, obstacles_)) {
       nodes_to_device(world);
       home_ = without(home_, MatterFields::nodes);
-      return visit_(world, memory_, dt);
+      return visit_(world, memory_, obstacles_, update_, dt);
     }
     change_nodes_at_home(world);
     // Gaps are measured from the places of solids and grains.
@@ -198,7 +198,7 @@ class Gpu final : public Backend<float> {
     memory_.stencil_blocks.upload(gpu::flat(stencil_blocks_));
     memory_.sources.upload(stencil_blocks_, world.grid.blocks.size());
     passes_.prepare(blocks);
-    visit_.prepare(world, update_.images(), update_.gaps());
+    visit_.prepare(world, obstacles_, update_);
     upload_obstacles(world);
   }
   void upload_obstacles(const World<float>& world) {

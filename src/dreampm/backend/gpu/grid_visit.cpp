@@ -42,6 +42,13 @@ GridVisit::GridVisit(Device& device)
       block_ranges_(device),
       wall_ranges_(device),
       parts_(device),
+      deep_blocks_(device),
+      deep_groups_(device),
+      deep_nodes_(device),
+      surfaces_(device),
+      deep_given_(device),
+      surface_blocks_(device),
+      copies_(device),
       near_(device),
       planes_(device),
       gaps_of_(device),
@@ -50,12 +57,45 @@ GridVisit::GridVisit(Device& device)
       gap_(device) {}
 
 bool GridVisit::takes(const World<float>& world, const Obstacles& obstacles) {
-  return !obstacles.any() && world.rigid.empty() && world.fields.empty() && world.viscous_stages == 0 &&
-         !world.needs_solid_field();
+  const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
+  return world.fields.empty() && world.viscous_stages == 0 && !world.needs_solid_field() && !(solid && obstacles.any());
 }
 
-void GridVisit::prepare(const World<float>& world, const MirrorWalls<float>& images, const ContactGaps& gaps) {
-  find_entries(world, images);
+void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
+  find_entries(world, obstacles, host);
+  find_gaps(world, host.gaps());
+  colliders_moved(world, obstacles);
+}
+
+/// Finds the nodes deep inside colliders.
+void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles) {
+  std::vector<DeepBlock> blocks;
+  std::vector<DeepNodes> groups;
+  std::vector<DeepNode> nodes;
+  collider_of_group_.clear();
+  const auto size = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
+  for (std::size_t b = 0; obstacles.any() && b < world.grid.blocks.size(); ++b) {
+    const std::vector<ObstacleNode>& near = obstacles.at(b);
+    const std::uint32_t begin = size(groups);
+    for (std::size_t c = 0; !near.empty() && c < world.colliders.size(); ++c) {
+      const std::uint32_t first = size(nodes);
+      for (const ObstacleNode& o : near)
+        if (o.collider == c && acts_within(world, o))
+          nodes.push_back({o.node, static_cast<Vec3<float>>(o.normal), static_cast<Vec3<float>>(o.velocity)});
+      if (size(nodes) == first) continue;
+      groups.push_back({first, size(nodes), static_cast<std::int32_t>(c)});
+      collider_of_group_.push_back(groups.back().collider);
+    }
+    if (size(groups) > begin) blocks.push_back({static_cast<std::uint32_t>(b), begin, size(groups)});
+  }
+  std::vector<ColliderSurface> surfaces;
+  for (const Collider& c : world.colliders)
+    surfaces.push_back({c.contact(), world.holds_liquid(0) ? 0.0f : static_cast<float>(c.friction)});
+  deep_blocks_.upload(blocks), deep_groups_.upload(groups), deep_nodes_.upload(nodes), surfaces_.upload(surfaces);
+  deep_given_.resize(groups.size());
+}
+
+void GridVisit::find_gaps(const World<float>& world, const ContactGaps& gaps) {
   for (std::size_t f = 0; f < 2; ++f) gapped_[f] = gaps.has(world, f);
   std::vector<NearWalls> near;
   for (const ContactGaps::NearBlock& b : gaps.near_blocks()) {
@@ -76,7 +116,11 @@ void GridVisit::prepare(const World<float>& world, const MirrorWalls<float>& ima
 
 /// Every block at a wall and every layer of images writes its impulses to a place of its own; those
 /// of one side lie together.
-void GridVisit::find_entries(const World<float>& world, const MirrorWalls<float>& images) {
+void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host) {
+  const MirrorWalls<float>& images = host.images();
+  // Where colliders move they may come anywhere until the next sort.
+  const bool all_wait = std::any_of(world.colliders.begin(), world.colliders.end(),
+                                    [](const Collider& c) { return c.path || c.changing || !c.stands(); });
   const BlockList& list = world.grid.blocks;
   std::vector<VisitBlock> blocks(list.size());
   std::vector<std::uint32_t> waiting;
@@ -84,7 +128,8 @@ void GridVisit::find_entries(const World<float>& world, const MirrorWalls<float>
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Vec3i first = list[b] * block_width;
     const std::uint32_t walls = walls_reached(world, first);
-    blocks[b] = {first, walls, images.changes(b), walls ? static_cast<std::int32_t>(entries.size()) : -1};
+    const bool waits = all_wait || images.changes(b) || (obstacles.any() && obstacles.near(b));
+    blocks[b] = {first, walls, waits, walls ? static_cast<std::int32_t>(entries.size()) : -1};
     if (blocks[b].waits) waiting.push_back(static_cast<std::uint32_t>(b));
     if (walls) entries.resize(entries.size() + 6, -1);
   }
@@ -95,8 +140,13 @@ void GridVisit::find_entries(const World<float>& world, const MirrorWalls<float>
   for (int axis = 0; axis < 3; ++axis) {
     axes_[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(layers.size());
     for (const auto& l : images.layers(axis))
-      layers.push_back({static_cast<std::uint32_t>(l.ghosts), static_cast<std::uint32_t>(l.walls),
-                        static_cast<std::uint32_t>(l.inners), l.side, -1, {l.folds[0], l.folds[1]}, node(l.ghosts),
+      layers.push_back({static_cast<std::uint32_t>(l.ghosts),
+                        static_cast<std::uint32_t>(l.walls),
+                        static_cast<std::uint32_t>(l.inners),
+                        l.side,
+                        -1,
+                        {l.folds[0], l.folds[1]},
+                        node(l.ghosts),
                         node(l.inners)});
   }
   axes_[3] = static_cast<std::uint32_t>(layers.size());
@@ -124,18 +174,46 @@ void GridVisit::find_entries(const World<float>& world, const MirrorWalls<float>
   sums_.resize(blocks.size()), given_.resize(count);
 }
 
-GridStats GridVisit::operator()(const World<float>& world, Memory& memory, double dt) {
+GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obstacles& obstacles,
+                                GridUpdate<float>& host, double dt) {
+  GridStats total;
+  total.colliders.resize(world.colliders.size());
   if (gapped_[0] || gapped_[1]) measure_gaps(world, memory);
   const VisitInput in = input(world, memory, dt);
   launch(BeginVisit{in}, blocks_.size());
+  meet_surfaces(world, memory, obstacles, host, dt, total);
   for (int axis = 2; folds_ && axis >= 0; --axis)
     launch(FoldImages{in, layers(axis), folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes},
            blocks_of(layers(axis)));
+  launch(
+      MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
+      deep_blocks_.size());
   launch(FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
     launch(ReflectImages{in, layers(axis), folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes},
            blocks_of(layers(axis)));
-  return results(world, in.damped != nullptr);
+  add_results(in.damped != nullptr, total);
+  return total;
+}
+
+void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
+                              double dt, GridStats& found) {
+  const std::vector<std::uint32_t>& blocks = host.surface_blocks();
+  if (blocks.empty()) return;
+  surface_blocks_.upload(blocks);
+  copies_.resize(blocks.size() * block_nodes), copies_home_.resize(copies_.size());
+  Node<float>* const grid = memory.nodes[nodes].data();
+  launch(CopyBlocks{surface_blocks_.data(), grid, copies_.data(), false}, blocks.size());
+  copies_.download(copies_home_);
+  const auto copy = [&](auto&& one) {
+    for (std::size_t i = 0; i < blocks.size(); ++i)
+      one(world.grid.nodes.data() + std::size_t{blocks[i]} * block_nodes, copies_home_.data() + i * block_nodes);
+  };
+  copy([](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
+  host.meet_surfaces(world, obstacles, dt, found);
+  copy([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
+  copies_.upload(copies_home_);
+  launch(CopyBlocks{surface_blocks_.data(), grid, copies_.data(), true}, blocks.size());
 }
 
 void GridVisit::measure_gaps(const World<float>& world, Memory& memory) {
@@ -182,16 +260,17 @@ LayersInput GridVisit::layers(int axis) const {
   return {layers_.data() + begin, static_cast<std::int32_t>(end - begin)};
 }
 
-GridStats GridVisit::results(const World<float>& world, bool damped) {
+void GridVisit::add_results(bool damped, GridStats& total) {
   // All sums come home at once.
-  const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size();
+  const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size(), deep = deep_given_.size(),
+                    damping = damped ? blocks : 0;
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));
-  parts_.resize((2 * blocks + walls) * sizeof(GridTerms));
+  parts_.resize((blocks + walls + damping) * sizeof(GridTerms));
   auto* const grid = reinterpret_cast<GridTerms*>(parts_.data());
   auto* const given = reinterpret_cast<SourceTerms*>(grid + blocks);
   launch(AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
   launch(AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
-  if (damped) launch(AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls}, blocks);
+  launch(AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls}, damping);
   home_.resize(parts_.size());
   parts_.download(home_);
   const auto part = [&]<class T>(std::size_t i, T) {
@@ -200,8 +279,6 @@ GridStats GridVisit::results(const World<float>& world, bool damped) {
     return one;
   };
 
-  GridStats total;
-  total.colliders.resize(world.colliders.size());
   GridTerms sum = GridTerms::none();
   for (std::size_t i = 0; i < blocks; ++i) sum.add(part(i, GridTerms{}));
   total.max_speed = std::sqrt(sum.fastest2);
@@ -215,8 +292,12 @@ GridStats GridVisit::results(const World<float>& world, bool damped) {
     total.walls[static_cast<std::size_t>(side_of_range_[i])] += one.sum();
     total.kinetic += one.gained;
   }
-  for (std::size_t i = 0; damped && i < blocks; ++i) total.damping += part(blocks + walls + i, SourceTerms{}).sum();
-  return total;
+  for (std::size_t i = 0; i < damping; ++i) total.damping += part(blocks + walls + i, SourceTerms{}).sum();
+  if (deep == 0) return;
+  deep_home_.resize(deep, SourceTerms::none());
+  deep_given_.download(deep_home_);
+  for (std::size_t i = 0; i < deep; ++i)
+    total.colliders[static_cast<std::size_t>(collider_of_group_[i])] += deep_home_[i].sum();
 }
 
 void GridVisit::add_image_mass(const World<float>& world, Memory& memory, double dt) {

@@ -14,23 +14,30 @@ namespace dreampm::gpu {
 class GridVisit {
  public:
   explicit GridVisit(Device& device);
-  /// True if a device can visit the nodes of this world: the host does where colliders, rigid
-  /// bodies, force fields, a second field or stages of viscosity act on them.
+  /// True if a device can visit the nodes of this world: the host does where force fields, a second
+  /// field or stages of viscosity act on them, or solids or grains meet colliders.
   static bool takes(const World<float>& world, const Obstacles& obstacles);
 
   /// Must be called after every change of the grid's block list or of the particles' order.
-  void prepare(const World<float>& world, const MirrorWalls<float>& images, const ContactGaps& gaps);
-  /// As Backend::grid_update.
-  GridStats operator()(const World<float>& world, Memory& memory, double dt);
+  void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
+  /// Must be called after colliders have moved, if nothing else changed.
+  void colliders_moved(const World<float>& world, const Obstacles& obstacles);
+  /// As Backend::grid_update. Contact with surfaces of colliders is the host's: the blocks of nodes
+  /// that it looks at go there and come back, and are overwritten in the World.
+  GridStats operator()(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
+                       double dt);
   /// As MirrorWalls::add_image_mass.
   void add_image_mass(const World<float>& world, Memory& memory, double dt);
 
  private:
-  void find_entries(const World<float>& world, const MirrorWalls<float>& images);
+  void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
+  void find_gaps(const World<float>& world, const ContactGaps& gaps);
+  void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
+                     double dt, GridStats& found);
   void measure_gaps(const World<float>& world, Memory& memory);
   VisitInput input(const World<float>& world, Memory& memory, double dt);
   LayersInput layers(int axis) const;
-  GridStats results(const World<float>& world, bool damped);
+  void add_results(bool damped, GridStats& total);
   template <class K>
   void launch(const K& kernel, std::size_t blocks) {
     dreampm::gpu::launch(*device_, kernel, blocks);
@@ -51,6 +58,17 @@ class GridVisit {
   std::vector<int> side_of_range_;
   Buffer<std::byte> parts_;
   std::vector<std::byte> home_;
+  // Nodes deep inside colliders, and blocks at their surfaces.
+  Buffer<DeepBlock> deep_blocks_;
+  Buffer<DeepNodes> deep_groups_;
+  Buffer<DeepNode> deep_nodes_;
+  Buffer<ColliderSurface> surfaces_;
+  std::vector<std::int32_t> collider_of_group_;
+  Buffer<SourceTerms> deep_given_;
+  std::vector<SourceTerms> deep_home_;
+  Buffer<std::uint32_t> surface_blocks_;
+  Buffer<Node<float>> copies_;
+  std::vector<Node<float>> copies_home_;
   // Gaps before walls.
   Buffer<NearWalls> near_;
   Buffer<WallPlane> planes_;

@@ -76,15 +76,14 @@ struct FoldImages {
     Node<float>* const nodes = in.grid.field[f];
     const Node<float> ghost = nodes[layer.ghosts + from], wall = nodes[layer.walls + from];
     Node<float>& inner = nodes[layer.inners + from];
-    const bool folds = image_folds(layer.side, type, ghost.m, inner.m, velocity(wall)) &&
-                       (!in.gaps[f].walls_of ||
-                        in.gaps[f].closed(static_cast<int>(layer.ghosts / block_nodes), layer.side, n));
+    const bool folds =
+        image_folds(layer.side, type, ghost.m, inner.m, velocity(wall)) &&
+        (!in.gaps[f].walls_of || in.gaps[f].closed(static_cast<int>(layer.ghosts / block_nodes), layer.side, n));
     folded[((&layer - layers.layers) * 2 + f) * plane_nodes + n] = folds;
     ImpulseSumOf<float> given;
     if (folds) {
       const Vec3<float> before = velocity(inner),
-                        after =
-                            dreampm::folded(layer.side, type, folds, velocity(ghost), ghost.m, before, inner.m);
+                        after = dreampm::folded(layer.side, type, folds, velocity(ghost), ghost.m, before, inner.m);
       set_velocity(inner, after);
       given.add(LayersInput::place(axis, n), inner.m, before, after, {0, 0, 0});
     }

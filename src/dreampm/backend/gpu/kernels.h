@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "dreampm/backend/gpu/deep_contact.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
@@ -62,8 +63,8 @@ using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
 /// Those of the grid, and sums.
 using GridKernels =
-    KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, ClearGaps, MeasureGaps,
-               FindWallGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+    KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep, CopyBlocks,
+               ClearGaps, MeasureGaps, FindWallGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
     typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;

@@ -90,7 +90,7 @@ struct BlockBoundaries {
     GridTerms sum;
   };
 
-  /// `shared.sum`: what is known of block `b`; goes to memory with the rest.
+  /// `shared.sum`: what is known of block `b`, which goes to memory with the rest.
   template <class Block>
   static DM_FN void finish(const VisitInput& in, Block& block, Shared& shared, int b) {
     const VisitBlock at = in.blocks[b];
@@ -106,10 +106,10 @@ struct BlockBoundaries {
         if (const std::int32_t entry = in.entries[at.entries + t]; entry >= 0)
           in.given[entry] = in.places.about_origin(shared.walls[t], at.first);
       if (t != 0) return;
-      shared.sum.add(shared.terms[0]);
-      const double total = shared.sum.kinetic2;
-      shared.sum.finite = shared.sum.finite && total - total == 0 && shared.sum.fastest2 < 1e30;
-      in.sums[b] = shared.sum;
+      GridTerms sum = shared.sum;
+      sum.add(shared.terms[0]);
+      sum.finite = sum.finite && sum.kinetic2 - sum.kinetic2 == 0 && sum.fastest2 < 1e30;
+      in.sums[b] = sum;
     });
   }
 
@@ -146,8 +146,7 @@ struct BlockBoundaries {
       if (f == 0) shared.terms[t] = own;
       if (f == 1) shared.terms[t].add(own);
     });
-    if (f == 1 || !in.grid.field[1])
-      add_up_threads<threads>(block, shared.terms);
+    if (f == 1 || !in.grid.field[1]) add_up_threads<threads>(block, shared.terms);
   }
   static DM_FN ImpulseTerms<float> meet(const VisitInput& in, const BoxWalls<float>& felt, int side, int b, int f,
                                         int n, Node<float>& node) {
@@ -156,8 +155,7 @@ struct BlockBoundaries {
     ImpulseSumOf<float> given;
     if (felt.holds(side, place)) {
       const bool gapped = in.gaps[f].walls_of != nullptr;
-      const float approach =
-          gapped ? in.gaps[f].approach(b, side, in_plane(axis_of(side), at), in.step.per_dt) : 0.0f;
+      const float approach = gapped ? in.gaps[f].approach(b, side, in_plane(axis_of(side), at), in.step.per_dt) : 0.0f;
       const WallContact<float> met = wall_contact<float>(felt, side, before, gapped ? &approach : nullptr);
       set_velocity(node, met.after);
       given.add(place, node.m, before, met.after, met.stopped);
@@ -194,8 +192,7 @@ struct BeginVisit {
       shared.given[t] = ImpulseTerms<float>::of(damped);
     });
     add_up_threads<threads>(block, shared.terms);
-    if (in.damped)
-      add_up_threads<threads>(block, shared.given);
+    if (in.damped) add_up_threads<threads>(block, shared.given);
     block.each_thread([&](int t) {
       if (t != 0) return;
       if (in.damped) in.damped[b] = in.places.about_origin(shared.given[0], at.first);

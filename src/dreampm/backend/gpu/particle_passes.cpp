@@ -12,9 +12,9 @@ ScatterBounds assumed_bounds(const World<float>& world, double speed) {
   const auto& [scattered, mass, ratio, viscosity] = world.scatter_bounds;
   double one = 0;  // no less than a particle's whole
   for (const ParticleSet<float>& set : world.sets) one = std::max(one, set.mass);
-  return widened(
-      {static_cast<float>(std::max(scattered, speed)), static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20),
-       static_cast<float>(std::max(ratio, 2.0)), static_cast<float>(std::max(viscosity, world.viscosity))});
+  return widened({static_cast<float>(std::max(scattered, speed)),
+                  static_cast<float>(mass > 0 ? std::max(mass, one) : 1e20), static_cast<float>(std::max(ratio, 2.0)),
+                  static_cast<float>(std::max(viscosity, world.viscosity))});
 }
 
 }  // namespace
@@ -50,15 +50,15 @@ PassInput ParticlePasses::input_of(const World<float>& world, std::size_t s, boo
   const SetMemory& memory = memory_.sets[s];
   const std::size_t field = world.field_of(set);
   PassInput in{memory.now.pointers(set.transfer.keeps_velocity()),
-                    memory.block_start.data(),
-                    memory_.stencil_blocks.data(),
-                    memory_.walls.data(),
-                    memory_.loads.data(),
-                    memory_.nodes[of_field(nodes, field)].data(),
-                    set.transfer.keeps_velocity() ? memory_.nodes[of_field(old_nodes, field)].data() : nullptr,
-                    memory_.nodes[mixture_share].data(),
-                    memory_.clearance.data(),
-                    {}};
+               memory.block_start.data(),
+               memory_.stencil_blocks.data(),
+               memory_.walls.data(),
+               memory_.loads.data(),
+               memory_.nodes[of_field(nodes, field)].data(),
+               set.transfer.keeps_velocity() ? memory_.nodes[of_field(old_nodes, field)].data() : nullptr,
+               memory_.nodes[mixture_share].data(),
+               memory_.clearance.data(),
+               {}};
   if (thin)
     for (std::size_t c = 0; c < 4; ++c) in.distance[c] = memory.distance[c].data();
   return in;
@@ -81,8 +81,7 @@ ScatterBounds ParticlePasses::pass(const PassStep& step, const ScatterBounds& bo
   memory_.block_sums.resize(blocks_);
   for (std::size_t s = 0; parts > 0 && s < world.sets.size(); ++s) {
     launch_pass(step, s, bounds);
-    launch(AddUp<BlockSums>{memory_.block_sums.data(), memory_.block_ranges.data(),
-                                      memory_.totals.data() + s * parts},
+    launch(AddUp<BlockSums>{memory_.block_sums.data(), memory_.block_ranges.data(), memory_.totals.data() + s * parts},
            parts);
   }
   totals_.assign(world.sets.size() * parts, BlockSums::none());
@@ -116,10 +115,10 @@ void ParticlePasses::launch_pass(const PassStep& pass, std::size_t s, const Scat
   const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts && world.colliders.empty();
   Materials::with(set.material, [&]<class M>() {
     const auto with = [&]<bool relaxes, bool is_plain>() {
-      launch(
-          Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds,
- input_of(world, s, pass.thin), out, static_cast<int>(field), world.measures_by_volume(field)},
-          blocks_);
+      launch(Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds,
+                                        input_of(world, s, pass.thin), out, static_cast<int>(field),
+                                        world.measures_by_volume(field)},
+             blocks_);
     };
     if constexpr (VolumeRelaxed<M>)
       if (step.volume_relaxation > 0)
@@ -135,8 +134,8 @@ void ParticlePasses::sum_arenas(std::size_t target, const ScatterBounds& bounds,
   nodes.resize(size);
   const bool based = target == mixture_share;
   launch(SumArenas{written_[target] ? memory_.arenas[target].data() : nullptr, memory_.sources.first.data(),
-                        memory_.sources.arena.data(), memory_.sources.corner.data(), memory_.loads.data(),
-                        based ? memory_.base.data() : nullptr, nodes.data(), bounds, unit_field(target)},
+                   memory_.sources.arena.data(), memory_.sources.corner.data(), memory_.loads.data(),
+                   based ? memory_.base.data() : nullptr, nodes.data(), bounds, unit_field(target)},
          size / block_nodes);
 }
 
@@ -164,7 +163,7 @@ void ParticlePasses::find_viscous_forces(World<float>& world, double dt, GridFie
 }
 /// Returns the largest speed that was scattered [m/s].
 float ParticlePasses::launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds,
- GridFields<float>& momenta) {
+                                     GridFields<float>& momenta) {
   memory_.block_speeds.resize(blocks_);
   speeds_.resize(blocks_);
   float fastest = 0;
@@ -175,7 +174,7 @@ float ParticlePasses::launch_viscous(World<float>& world, double dt, const Scatt
         const std::size_t field = world.field_of(set);
         const ArenaOutput out = arena(of_field(nodes, field), momenta);
         launch(ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
-                                   input_of(world, s, false), out, memory_.block_speeds.data(), static_cast<int>(field)},
+                              input_of(world, s, false), out, memory_.block_speeds.data(), static_cast<int>(field)},
                blocks_);
         memory_.block_speeds.download(speeds_);
         for (const float speed : speeds_) fastest = std::max(fastest, speed);

@@ -106,8 +106,7 @@ void ParticleSort::find_cells(World<float>& world, Memory& memory) {
   resize_for_overwrite(halves_, cells_.size());
   cells_.download(halves_);
   resize_for_overwrite(occupied_, blocks);
-  for (std::size_t b = 0; b < blocks; ++b)
-    occupied_[b] = halves_[2 * b] | std::uint64_t{halves_[2 * b + 1]} << 32;
+  for (std::size_t b = 0; b < blocks; ++b) occupied_[b] = halves_[2 * b] | std::uint64_t{halves_[2 * b + 1]} << 32;
 }
 
 void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memory) {

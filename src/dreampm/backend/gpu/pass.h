@@ -51,6 +51,8 @@ template <class M, bool relaxes, bool plain>
 struct Pass {
   using Material = M;
   static constexpr int threads = 128;
+  /// Four blocks to a multiprocessor are 128 registers a thread: no plain kernel spills then.
+  static constexpr int resident = plain ? 4 : 1;
   static constexpr int columns = state_columns<M>;
   static_assert(columns <= most_state_columns, "a material has more columns of state than ParticleColumns holds");
 

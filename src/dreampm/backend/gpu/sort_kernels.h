@@ -134,9 +134,9 @@ struct FillPlaces {
   struct Shared {};
   SortInput in;
   SortTargets targets;
-  const std::uint32_t* start;   ///< by cell
-  const std::int32_t* number;   ///< by particle
-  std::uint32_t* from;          ///< by new place
+  const std::uint32_t* start;  ///< by cell
+  const std::int32_t* number;  ///< by particle
+  std::uint32_t* from;         ///< by new place
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {

@@ -109,9 +109,10 @@ struct FindWallGaps {
           if (slot < 0) continue;
           Vec3i node;
           node[a] = wall.plane, node[b] = row & (block_width - 1), node[c] = column & (block_width - 1);
-          least = min(std::bit_cast<float>(gaps[std::int64_t{slot} * block_gaps + wall.side * block_nodes +
-                                                node_index(node.x, node.y, node.z)]),
-                      least);
+          least = min(
+              std::bit_cast<float>(
+                  gaps[std::int64_t{slot} * block_gaps + wall.side * block_nodes + node_index(node.x, node.y, node.z)]),
+              least);
         }
       gap[std::int64_t{w} * plane_nodes + n] = least;
     });

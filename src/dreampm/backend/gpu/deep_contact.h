@@ -1,0 +1,98 @@
+// Contact of nodes deep inside colliders on a device, and the way of some blocks of nodes to the host
+// and back, where contact with surfaces is.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/backend/gpu/node_visit.h"
+
+namespace dreampm::gpu {
+
+/// How a collider's surface holds matter.
+struct ColliderSurface {
+  WallType type;
+  float friction;
+};
+/// A node too deep inside a collider for contact at its surface; as ObstacleNode.
+struct DeepNode {
+  std::int32_t node;  ///< its number in its block
+  Vec3<float> normal, velocity;
+};
+/// Those of one block in one collider.
+struct DeepNodes {
+  std::uint32_t begin, end;  ///< of its nodes
+  std::int32_t collider;
+};
+/// A block of the grid that has some, of one collider after the other.
+struct DeepBlock {
+  std::uint32_t block, begin, end;  ///< of DeepNodes
+};
+
+/// Stops nodes at the colliders that hold them. A block of threads takes one that has some.
+struct MeetDeep {
+  static constexpr int threads = block_nodes;
+  struct Shared {
+    ImpulseTerms<float> given[threads];
+  };
+  VisitInput in;
+  const DeepBlock* blocks;
+  const DeepNodes* groups;
+  const DeepNode* nodes;
+  const ColliderSurface* colliders;
+  SourceTerms* given;  ///< by group
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared& shared) const {
+    const DeepBlock at = blocks[block.index()];
+    const Vec3i first = in.blocks[at.block].first;
+    for (std::uint32_t g = at.begin; g < at.end; ++g) {
+      const DeepNodes group = groups[g];
+      block.each_thread([&](int t) {
+        shared.given[t] = ImpulseTerms<float>::none();
+        for (std::uint32_t d = group.begin; d < group.end; ++d)
+          if (nodes[d].node == t)
+            shared.given[t] = meet(nodes[d], colliders[group.collider],
+                                   in.grid.field[0][std::int64_t{at.block} * block_nodes + t]);
+      });
+      add_up_threads<threads>(block, shared.given);
+      block.each_thread([&](int t) {
+        if (t == 0) given[g] = in.places.about_origin(shared.given[0], first);
+      });
+    }
+  }
+
+ private:
+  static DM_FN ImpulseTerms<float> meet(const DeepNode& at, const ColliderSurface& collider, Node<float>& node) {
+    ImpulseSumOf<float> sum;
+    if (has_mass(node)) {
+      const Vec3<float> before = velocity(node),
+                        after = contact(before - at.velocity, at.normal, collider.type, collider.friction) +
+                                at.velocity;
+      set_velocity(node, after);
+      sum.add(static_cast<Vec3<float>>(node_offset(at.node)), node.m, before, after, after);
+    }
+    return ImpulseTerms<float>::of(sum);
+  }
+};
+
+/// Copies some blocks of nodes side by side, or back from there.
+struct CopyBlocks {
+  static constexpr int threads = block_nodes;
+  struct Shared {};
+  const std::uint32_t* blocks;
+  Node<float>*grid, *copies;
+  bool back;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    const std::int64_t there = std::int64_t{blocks[block.index()]} * block_nodes,
+                       here = std::int64_t{block.index()} * block_nodes;
+    block.each_thread([&](int t) {
+      if (back)
+        grid[there + t] = copies[here + t];
+      else
+        copies[here + t] = grid[there + t];
+    });
+  }
+};
+
+}  // namespace dreampm::gpu
