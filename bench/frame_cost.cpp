@@ -4,7 +4,6 @@
 #include <filesystem>
 
 #include "bench/temporary_folder.h"
-#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/file.h"
 #include "dreampm/pictures/frames.h"
 #include "dreampm/run/ledger_row.h"
@@ -56,8 +55,8 @@ model::Scene probed(const World<float>& world) {
 
 }  // namespace
 
-FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
-  const auto backend = make_cpu_backend(isa);
+FrameCost frame_cost(const Course& course, const BackendChoice& choice, int tries) {
+  const auto backend = make_bench_backend(choice);
   World<float> world = course.world();
   backend->attach(world);
   const TemporaryFolder folder;
@@ -84,6 +83,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
       probes.accumulate(report);
     });
     const double writing = seconds_of([&] {
+      backend->download(world, motion, MatterFields::all);
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
       LedgerRow row = ledger_row(world, *backend, motion, sums, last ? &*last : nullptr);
       row.frame = frame + 1;

@@ -11,6 +11,6 @@ namespace dreampm {
 struct FrameCost {
   double step = 0, output = 0;
 };
-FrameCost frame_cost(const Course& course, const std::string& isa, int tries);
+FrameCost frame_cost(const Course& course, const BackendChoice& choice, int tries);
 
 }  // namespace dreampm

@@ -68,7 +68,7 @@ TEST(Counted, ALawGivesTheSameNumbers) {
 TEST(Bench, AStepHasAtLeastTheWorkOfItsStencils) {
   std::map<std::string, double> work;
   for (const MaterialInfo& m : material_infos()) {
-    const Course course(column_scene(m, {4, 4, 4}), "auto");
+    const Course course(column_scene(m, {4, 4, 4}), {});
     const OperationCount n = operations_of(course.world());
     // Gather and scatter: three components of 27 nodes each way, at one operation each, is less
     // than any way of doing it.
@@ -86,9 +86,9 @@ TEST(Bench, AStepHasAtLeastTheWorkOfItsStencils) {
 
 TEST(Bench, TheColumnMovesATwentiethOfACellAStep) {
   for (const char* name : {"newtonian", "snow"}) {
-    const Course course(column_scene(*find_material(name), {8, 8, 4}), "auto");
+    const Course course(column_scene(*find_material(name), {8, 8, 4}), {});
     EXPECT_EQ(course.world().particles(), 8u * 8 * 8 * 4);
-    const Timing t = course.run("auto", {3, 0, {}});
+    const Timing t = course.run({}, {3, 0, {}});
     EXPECT_EQ(t.windows.size(), 3u);
     EXPECT_GT(t.steps_per_sort, 14) << name;
     EXPECT_LT(t.steps_per_sort, 23) << name;
@@ -103,7 +103,7 @@ TEST(Bench, TheColumnMovesATwentiethOfACellAStep) {
 }
 
 TEST(Bench, MemoryIsWhatTheProcessTook) {
-  const Course course(column_scene(*find_material("newtonian"), {40, 40, 20}), "auto");
+  const Course course(column_scene(*find_material("newtonian"), {40, 40, 20}), {});
   // Position, state and id at least; and no more than the arrays of a few steps.
   EXPECT_GT(course.memory_per_particle(), 20);
   EXPECT_LT(course.memory_per_particle(), 300);
