@@ -22,11 +22,20 @@ struct DeviceCase {
 constexpr Vec3i cells_8192{16, 8, 8}, cells_65536{32, 16, 16}, million{64, 64, 32}, eight_million{128, 128, 64},
     sixty_four_million{250, 250, 128};
 constexpr DeviceCase device_cases[] = {
-    {"newtonian", cells_8192},   {"newtonian", cells_65536},        {"newtonian", million},
-    {"newtonian", eight_million}, {"newtonian", sixty_four_million}, {"snow", cells_8192},
-    {"snow", cells_65536},       {"snow", million},                 {"snow", eight_million},
-    {"snow", sixty_four_million}, {"elastic", million},              {"elastic", eight_million},
-    {"sand", million},           {"sand", eight_million},
+    {"newtonian", cells_8192},
+    {"newtonian", cells_65536},
+    {"newtonian", million},
+    {"newtonian", eight_million},
+    {"newtonian", sixty_four_million},
+    {"snow", cells_8192},
+    {"snow", cells_65536},
+    {"snow", million},
+    {"snow", eight_million},
+    {"snow", sixty_four_million},
+    {"elastic", million},
+    {"elastic", eight_million},
+    {"sand", million},
+    {"sand", eight_million},
 };
 
 double gigabytes(double bytes) { return 1e-9 * bytes; }
@@ -50,7 +59,8 @@ void measure(const DeviceCase& c, const DeviceTableOptions& options, const Backe
 
 std::vector<BenchRow> bench_device_table(const DeviceTableOptions& options) {
   const BackendChoice choice{options.backend, "auto"};
-  if (choice.on_host()) fail_input("--backend {}: it has no device; its table is that without --backend", choice.backend);
+  if (choice.on_host())
+    fail_input("--backend {}: it has no device; its table is that without --backend", choice.backend);
   const std::string isa(make_bench_backend(choice)->isa());
   std::vector<BenchRow> rows;
   std::map<std::string_view, double> per_particle;  // B, of the last case of the material
@@ -60,8 +70,8 @@ std::vector<BenchRow> bench_device_table(const DeviceTableOptions& options) {
     const double need = per_particle[c.material] * static_cast<double>(c.particles()),
                  free = static_cast<double>(device_of(choice)->free);
     if (need > free)
-      row.note = fmt::format("needs some {:.1f} GB of the device's memory, {:.1f} are free",
-                             gigabytes(need), gigabytes(free));
+      row.note =
+          fmt::format("needs some {:.1f} GB of the device's memory, {:.1f} are free", gigabytes(need), gigabytes(free));
     else
       measure(c, options, choice, row, per_particle[c.material]);
     if (options.each) options.each(row);

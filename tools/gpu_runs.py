@@ -34,7 +34,7 @@ bodies: {{column: {{material: matter, shape: {{box: {{min: [0, 0, 0], max: [{hal
 
 def end(process):
     """Ends a command and what it started."""
-    for sign, wait in ((signal.SIGTERM, 5), (signal.SIGKILL, None)):
+    for sign, wait in ((signal.SIGTERM, 3), (signal.SIGKILL, None)):
         try:
             os.killpg(process.pid, sign)
             process.communicate(timeout=wait)
