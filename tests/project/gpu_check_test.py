@@ -40,6 +40,13 @@ elif words[0] == "run":
 elif words[:2] == ["play", "--help"]:
     print("--frames")
 """
+SANITIZER = r"""#!/usr/bin/python3 -SE
+import sys
+print("========= COMPUTE-SANITIZER")
+tool = sys.argv[sys.argv.index("--tool") + 1]
+print("========= RACECHECK SUMMARY: 1 hazard" if tool == "racecheck" else "========= ERROR SUMMARY: 0 errors")
+sys.exit(9 if tool == "racecheck" else 0)
+"""
 failures = []
 
 
@@ -79,8 +86,9 @@ def main():
     tool = pathlib.Path(sys.argv[1]).resolve() / "gpu_check"
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / "dreampm").write_text(STAND_IN)
-        (folder / "dreampm").chmod(0o755)
+        for program, text in (("dreampm", STAND_IN), ("compute-sanitizer", SANITIZER)):
+            (folder / program).write_text(text)
+            (folder / program).chmod(0o755)
         parts = ("--only", "small", "cpu", "large", "dragon", "play", "largest")
 
         fast = check(tool, folder, *parts)
@@ -97,6 +105,11 @@ def main():
         expect("a bar", slow.found["missed"][0], "newtonian, 1,048,576 particles: 4 G/s, wanted 6")
         other = check(tool, folder, "--only", "small", MPS="4000", CARD="NVIDIA L4")
         expect("a card without bars", (other.code, other.found["missed"]), (0, []))
+
+        race = check(tool, folder, "--only", "sanitizer", PATH=f"{folder}:{os.environ['PATH']}")
+        expect("a race", (race.code, race.found["failed"][0]),
+               (1, "racecheck of snow and water about a ball: exit code 9: RACECHECK SUMMARY: 1 hazard"))
+        expect("its runs", [r["code"] for r in race.found["sanitizer"]["runs"]], [9, 9, 0, 0, 0, 0])
 
         missing = check(tool, folder, MISSING="1")
         expect("no card", (missing.code, missing.found["failed"]), (1, ["no device: no CUDA: no driver"]))
