@@ -5,6 +5,7 @@
 
 #include "bench/bench.h"
 #include "bench/course.h"
+#include "bench/frame_cost.h"
 #include "bench/operations.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
@@ -17,7 +18,7 @@ namespace {
 struct DeviceCase {
   std::string_view material;
   Vec3i cells;
-  std::uint64_t particles() const { return 8 * static_cast<std::uint64_t>(cells.x) * cells.y * cells.z; }
+  constexpr std::uint64_t particles() const { return 8 * static_cast<std::uint64_t>(cells.x) * cells.y * cells.z; }
 };
 constexpr Vec3i cells_8192{16, 8, 8}, cells_65536{32, 16, 16}, million{64, 64, 32}, eight_million{128, 128, 64},
     sixty_four_million{250, 250, 128};
@@ -76,6 +77,10 @@ std::vector<BenchRow> bench_device_table(const DeviceTableOptions& options) {
       measure(c, options, choice, row, per_particle[c.material]);
     if (options.each) options.each(row);
     rows.push_back(std::move(row));
+  }
+  if (constexpr DeviceCase c{"newtonian", million}; c.particles() <= options.largest) {
+    rows.push_back(frame_row(Course(column_scene(*find_material(c.material), c.cells), choice), choice, isa));
+    if (options.each) options.each(rows.back());
   }
   return rows;
 }

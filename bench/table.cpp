@@ -178,13 +178,10 @@ void Table::memory() {
 
 void Table::frames() {
   const ThreadLimit limit(2);
-  // The dragon at full resolution: dx 6 mm, c + v = 49 m/s, cfl 1/2, 24 frames a second.
-  constexpr double steps = 49 / (0.5 * 0.006) / 24;
   const Course course(column_scene(*find_material("newtonian"), shrunk(million)), by(widest_));
-  const FrameCost cost = frame_cost(course, by(widest_), 3);
-  add({"output, ledger and probes in a frame of the dragon", course.world().particles(), widest_, 2,
-       100 * cost.output / (cost.output + steps * cost.step), "%", 0,
-       fmt::format("at most 5; {:.2f} s beside {:.0f} steps of {:.3f} s", cost.output, steps, cost.step)});
+  BenchRow row = frame_row(course, by(widest_), widest_);
+  row.note = "at most 5; " + row.note;
+  add(std::move(row));
 }
 
 void Table::projection() {
