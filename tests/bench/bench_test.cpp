@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <set>
 
 #include "bench/bench.h"
 #include "bench/course.h"
 #include "bench/operations.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
@@ -100,6 +103,29 @@ TEST(Bench, TheColumnMovesATwentiethOfACellAStep) {
     EXPECT_EQ(t.stages.size(), 3u);
     EXPECT_LE(shares, 1);
   }
+}
+
+/// The places of a world's first set, by id.
+std::map<std::uint32_t, Vec3d> places(const World<float>& world) {
+  std::map<std::uint32_t, Vec3d> all;
+  const ParticleSetView<float> set(world, 0);
+  set.for_each([&](std::size_t p, const Vec3d& x) { all[set.id(p)] = x; });
+  return all;
+}
+
+TEST(Bench, ACourseBringsHomeWhatADeviceMoved) {
+  ASSERT_EQ(::setenv("DREAMPM_CUDA", STAND_IN, 1), 0);
+  const BenchScene scene = column_scene(*find_material("snow"), {4, 4, 4});
+  const auto there = places(Course(scene, {"cuda"}).world()), here = places(Course(scene, {}).world());
+  ASSERT_EQ(there.size(), scene.seeds[0].size());
+  double apart = 0, moved = 0;
+  for (const ParticleSeed& s : scene.seeds[0]) {
+    apart = std::max(apart, length(there.at(s.id) - here.at(s.id)));
+    moved = std::max(moved, length(there.at(s.id) - s.position));
+  }
+  // A sort's distance; a step is a twentieth of a cell.
+  EXPECT_GT(moved, 0.5 * bench_dx);
+  EXPECT_LT(apart, 0.002 * bench_dx);
 }
 
 TEST(Bench, MemoryIsWhatTheProcessTook) {
