@@ -1,5 +1,9 @@
 #include "bench/course.h"
 
+#if __has_include(<malloc.h>)
+#include <malloc.h>
+#endif
+
 #include <algorithm>
 
 #include "bench/moment.h"
@@ -124,6 +128,9 @@ Course::Course(BenchScene scene, const BackendChoice& choice) {
   const double before = static_cast<double>(resident_memory_bytes()) - particles * sizeof(ParticleSeed);
   auto world = std::make_unique<World<float>>(std::move(scene.world));
   start(scene, *world, backend);
+#ifdef __GLIBC__
+  malloc_trim(0);  // what the start took does not count
+#endif
   const bool measured = restart_peak_memory();
   for (int steps = 0; steps < least_warm_steps;) steps += period(*world, backend);
   const double grown = static_cast<double>(peak_memory_bytes()) - before;
