@@ -8,7 +8,6 @@
 #include "bench/large_steps.h"
 #include "bench/operations.h"
 #include "bench/scenes.h"
-#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/io/run_record.h"
@@ -62,7 +61,9 @@ std::vector<BenchRow> bench_projection(const StepBenchOptions& options) {
   if (options.material != "newtonian" || options.droplets)
     fail_input("--solver projection: moves water at rest and in a splash; leave --material and --droplets out");
   check_particles(options.particles);
-  const std::string isa(make_cpu_backend(options.isa)->isa());
+  if (!options.backend.on_host())
+    fail_input("--solver projection: it computes on processors; leave --backend {} out", options.backend.backend);
+  const std::string isa(make_bench_backend(options.backend)->isa());
   std::vector<BenchRow> rows;
   for (const auto& [waters, name] : {std::pair{Waters::calm, "calm water"}, std::pair{Waters::splash, "a splash"}}) {
     const auto begin = [&] {
@@ -91,21 +92,25 @@ StepBenchResult bench_step(const StepBenchOptions& options) {
   check_particles(options.particles);
   const ThreadLimit threads(options.threads);
   StepBenchResult r;
-  r.isa = std::string(make_cpu_backend(options.isa)->isa());
+  r.backend = options.backend.backend;
+  r.isa = std::string(make_bench_backend(options.backend)->isa());
+  if (const auto device = device_of(options.backend)) r.device = device->about;
   r.material = options.material;
   r.cells = options.droplets ? Vec3i{1, 1, 1} : options.cells.value_or(column_cells(options.particles));
   r.droplets = options.droplets;
   r.threads = options.threads;
   const Course course(
-      options.droplets ? droplets_scene(material, options.particles / 8) : column_scene(material, r.cells), r.isa);
+      options.droplets ? droplets_scene(material, options.particles / 8) : column_scene(material, r.cells),
+      options.backend);
   r.particles = course.world().particles();
   r.memory_per_particle = course.memory_per_particle();
+  r.device_memory_per_particle = course.device_memory_per_particle();
   r.peak_memory_bytes = peak_memory_bytes();
   r.operations = static_cast<double>(operations_of(course.world()).slots(fuses(r.isa)));
   r.bytes_moved = bytes_moved_of(course.world());
   r.bytes_per_particle = bytes_per_particle(course.world());
 
-  const Timing timing = course.run(r.isa, {options.windows, options.window_seconds, options.each});
+  const Timing timing = course.run(options.backend, {options.windows, options.window_seconds, options.each});
   r.windows = timing.windows, r.cpu_windows = timing.cpu_windows;
   r.ns_per_particle_step = timing.median();
   r.cpu_ns = timing.cpu_median();

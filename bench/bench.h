@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/backend_choice.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -18,7 +19,7 @@ struct StepBenchOptions {
   bool droplets = false;              ///< `particles` in drops of 8 that are far apart, instead of a column
   bool large_steps = false;           ///< of the projection, for bench_taps
   int threads = 1;
-  std::string isa = "auto";
+  BackendChoice backend;
   int windows = 5;              ///< the result is the median of this number of windows
   double window_seconds = 0.5;  ///< at least this long each
   /// Called after every window with its ns per particle-step: wall clock, and processor time of all
@@ -27,7 +28,9 @@ struct StepBenchOptions {
 };
 
 struct StepBenchResult {
-  std::string material, isa;
+  std::string material, backend;
+  std::string isa;     ///< or the kind of device
+  std::string device;  ///< a line about it; empty for processors
   std::uint64_t particles = 0;
   Vec3i cells;  ///< of the column, or of a droplet
   bool droplets = false;
@@ -41,6 +44,7 @@ struct StepBenchResult {
   double bytes_per_particle = 0;   ///< columns and grids
   double memory_per_particle = 0;  ///< what the process took at most while stepping, all in [B]; 0: not known
   std::uint64_t peak_memory_bytes = 0;
+  double device_memory_per_particle = 0;  ///< B; 0: not known, or no device
   double operations = 0;   ///< instructions of a particle-step for the units of multiply-adds, in one lane: the set's
                            ///< multiply-adds, one or two each, multiplications, additions, divisions, roots
   double bytes_moved = 0;  ///< of a particle-step, at least
@@ -65,19 +69,20 @@ Floors floors_of(const StepBenchResult& result, const Ceilings& ceilings);
 Ceilings measure_ceilings(const std::string& isa, int threads);
 
 /// A column of matter, 8 particles a cell, moves and collapses in a box; sorting, grid and dt are
-/// all counted. Throws InputError for a material or instruction set that is not there.
+/// all counted. Throws InputError for a material, backend or instruction set that is not there.
 StepBenchResult bench_step(const StepBenchOptions& options);
 
 /// One line of the table.
 struct BenchRow {
   std::string what;
   std::uint64_t particles = 0;
-  std::string isa;
+  std::string isa;  ///< or the kind of device
   int threads = 1;
   std::optional<double> value;  ///< absent: not run here
   std::string unit;             ///< "M/s", "x", "B", "%"
   double spread = 0;            ///< of the windows, over the median
-  std::string note;             ///< limits, floors, shares
+  std::string note;             ///< limits, floors, shares; the reason where it was not run, if there is more to say
+  std::string backend = "cpu";
 };
 
 /// Measures the cost of a particle-step of the projection, in calm water and in a splash: with one
@@ -106,8 +111,22 @@ struct TableOptions {
   std::function<void(const BenchRow&)> each;  ///< called with every row as it comes, if there is one
 };
 
+struct DeviceTableOptions {
+  std::string backend;              ///< one with a device
+  std::uint64_t largest = 1 << 26;  ///< no row has more particles
+  int windows = 5;                  ///< of each row
+  double window_seconds = 0.4;
+  std::function<void(const BenchRow&)> each;  ///< called with every row as it comes, if there is one
+};
+
+/// Steps of columns of 8,192 to 64 million particles on a device, by the clock, with all threads
+/// that may be used; what the device has no room for, judged by the rows before, is not run. Takes
+/// minutes. Throws InputError for a backend without a device, or where there is none.
+std::vector<BenchRow> bench_device_table(const DeviceTableOptions& options);
+
 /// Every case that the project watches. One thread is measured in processor time, more by the
-/// clock. Takes minutes. Throws InputError for an instruction set that is not there.
+/// clock. Takes minutes. Throws InputError for an instruction set or backend that is
+/// not there.
 std::vector<BenchRow> bench_table(const TableOptions& options);
 
 }  // namespace dreampm

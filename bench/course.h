@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/backend_choice.h"
 #include "bench/scenes.h"
-#include "dreampm/backend/backend.h"
 
 namespace dreampm {
 
@@ -41,19 +41,21 @@ struct Pace {
 class Course {
  public:
   /// Begins the scene and steps it with all threads that may be used.
-  Course(BenchScene scene, const std::string& isa);
+  Course(BenchScene scene, const BackendChoice& choice);
 
   const World<float>& world() const { return *start_; }
   /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the
   /// course.
-  Timing run(const std::string& isa, const Pace& pace) const;
+  Timing run(const BackendChoice& choice, const Pace& pace) const;
   /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed
   /// up. 0: not known, or too little to measure.
   double memory_per_particle() const { return memory_; }
+  /// The same of a device's memory.
+  double device_memory_per_particle() const { return device_memory_; }
 
  private:
   std::unique_ptr<const World<float>> start_;
-  double memory_ = 0;
+  double memory_ = 0, device_memory_ = 0;
 };
 
 /// Returns the size of a world's arrays, and of the second grid of a step, over particles [B].

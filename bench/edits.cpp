@@ -58,17 +58,20 @@ class Silent final : public Host {
 }  // namespace
 
 std::vector<BenchRow> bench_edits(const EditBenchOptions& options) {
+  check_isa(options.backend);
   const TemporaryFolder folder;
   const std::string mesh = (folder.path / "stone.ply").string();
   const TriMesh stone = lobed_ball({0.2, 0.1, 0.2}, 0.08, options.faces);
   write_mesh(mesh, stone);
   Silent host;
-  Simulation simulation(pool(options, mesh), {.threads = options.threads, .host = &host});
+  Simulation simulation(
+      pool(options, mesh),
+      {.backend = options.backend.backend, .isa = options.backend.isa, .threads = options.threads, .host = &host});
   std::vector<BenchRow> rows;
   std::vector<double> forming;
   const auto row = [&](const char* what, const std::vector<double>& times, const std::string& note) {
     rows.push_back({what, simulation.particle_count(), simulation.isa(), options.threads, median_of(times), "ms",
-                    spread_of(times), note});
+                    spread_of(times), note, options.backend.backend});
   };
   // The formation of the grid is not part of the edit: it is measured apart, and steps lie between.
   const auto measure = [&](const char* what, const std::function<void(int)>& edit,

@@ -4,8 +4,8 @@
 #include <filesystem>
 
 #include "bench/temporary_folder.h"
-#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/file.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/pictures/frames.h"
 #include "dreampm/run/ledger_row.h"
 #include "dreampm/run/probe_set.h"
@@ -56,8 +56,8 @@ model::Scene probed(const World<float>& world) {
 
 }  // namespace
 
-FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
-  const auto backend = make_cpu_backend(isa);
+FrameCost frame_cost(const Course& course, const BackendChoice& choice, int tries) {
+  const auto backend = make_bench_backend(choice);
   World<float> world = course.world();
   backend->attach(world);
   const TemporaryFolder folder;
@@ -84,6 +84,7 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
       probes.accumulate(report);
     });
     const double writing = seconds_of([&] {
+      backend->download(world, motion, MatterFields::all);
       write_particles(folder.path / "particles.ply", particle_frame(world, motion, bodies, {"velocity"}, {}));
       LedgerRow row = ledger_row(world, *backend, motion, sums, last ? &*last : nullptr);
       row.frame = frame + 1;
@@ -99,6 +100,21 @@ FrameCost frame_cost(const Course& course, const std::string& isa, int tries) {
     output.push_back(std::max(0.0, with - without) + writing);
   }
   return {median_of(plain), median_of(output)};
+}
+
+BenchRow frame_row(const Course& course, const BackendChoice& choice, const std::string& isa) {
+  // The dragon at full resolution: dx 6 mm, c + v = 49 m/s, cfl 1/2, 24 frames a second.
+  constexpr double steps = 49 / (0.5 * 0.006) / 24;
+  const FrameCost cost = frame_cost(course, choice, 3);
+  return {"output, ledger and probes in a frame of the dragon",
+          course.world().particles(),
+          isa,
+          thread_count(),
+          100 * cost.output / (cost.output + steps * cost.step),
+          "%",
+          0,
+          fmt::format("{:.3g} s beside {:.0f} steps of {:.2g} s", cost.output, steps, cost.step),
+          choice.backend};
 }
 
 }  // namespace dreampm

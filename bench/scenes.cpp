@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dreampm/base/error.h"
+#include "dreampm/base/parallel.h"
 #include "dreampm/math/rng.h"
 #include "dreampm/physics/materials.h"
 
@@ -36,14 +37,20 @@ World<float> domain_of(const MaterialInfo& material, const Vec3i& cells, int dep
 /// velocity.
 void fill(BenchScene& scene, const Vec3i& first, const Vec3i& cells, const Vec3d& velocity) {
   std::vector<ParticleSeed>& all = scene.seeds.at(0);
-  for (int i = 0; i < 2 * cells.x; ++i)
-    for (int j = 0; j < 2 * cells.y; ++j)
-      for (int k = 0; k < 2 * cells.z; ++k) {
-        const auto id = static_cast<std::uint32_t>(all.size());
-        const auto at = [&](std::uint64_t axis, int n) { return 0.5 * (n + 0.5) + 0.25 * (uniform(axis, id) - 0.5); };
-        const Vec3d p = static_cast<Vec3d>(first) + Vec3d{at(1, i), at(2, j), at(3, k)};
-        all.push_back({id, p * bench_dx, velocity, {}});
-      }
+  const std::size_t there = all.size(), wide = static_cast<std::size_t>(2 * cells.x),
+                    high = static_cast<std::size_t>(2 * cells.y), deep = static_cast<std::size_t>(2 * cells.z);
+  all.resize(there + wide * high * deep);
+  parallel_for(wide * high, 1 + 4096 / deep, [&](std::size_t column) {
+    for (std::size_t k = 0; k < deep; ++k) {
+      const std::size_t p = there + column * deep + k;
+      const auto id = static_cast<std::uint32_t>(p);
+      const auto at = [&](std::uint64_t axis, std::size_t n) {
+        return 0.5 * (static_cast<double>(n) + 0.5) + 0.25 * (uniform(axis, id) - 0.5);
+      };
+      const Vec3d place = static_cast<Vec3d>(first) + Vec3d{at(1, column / high), at(2, column % high), at(3, k)};
+      all[p] = {id, place * bench_dx, velocity, {}};
+    }
+  });
 }
 
 /// The speed [m/s] at which matter moves `cells_per_step`: v dt/dx with dt = cfl dx/(c + v).

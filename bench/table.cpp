@@ -74,12 +74,13 @@ class Table {
     const auto of = [&](int n) { return std::max(2, n / options_.shrink); };
     return {of(cells.x), of(cells.y), of(cells.z)};
   }
+  static BackendChoice by(const std::string& isa) { return {"cpu", isa}; }
   bool asked(std::string_view isa) const { return options_.isa.empty() || isa == widest_; }
   Pace pace() const { return {options_.windows, options_.window_seconds, {}}; }
   Timing timed(BenchScene scene) const {
     Pace few = pace();
     few.windows = std::min(few.windows, 3);  // half a million scattered particles take their time
-    return Course(std::move(scene), widest_).run(widest_, few);
+    return Course(std::move(scene), by(widest_)).run(by(widest_), few);
   }
   const Ceilings& ceilings(const std::string& isa, int threads) {
     const auto [at, fresh] = ceilings_.try_emplace({isa, threads});
@@ -115,7 +116,7 @@ void Table::limits() {
 
 void Table::steps(const StepCase& c) {
   const auto here = cpu_instruction_sets();
-  const Course course(column_scene(*find_material(c.material), shrunk(c.cells)), widest_);
+  const Course course(column_scene(*find_material(c.material), shrunk(c.cells)), by(widest_));
   const OperationCount operations = operations_of(course.world());
   StepBenchResult work;
   work.bytes_moved = bytes_moved_of(course.world());
@@ -127,7 +128,7 @@ void Table::steps(const StepCase& c) {
       BenchRow row{std::string(c.material), course.world().particles(), std::string(isa), threads, {}, "M/s", 0, {}};
       if (std::find(here.begin(), here.end(), isa) != here.end()) {
         const ThreadLimit limit(threads);
-        const Timing timing = course.run(row.isa, pace());
+        const Timing timing = course.run(by(row.isa), pace());
         const Floors floors = floors_of(work, ceilings(row.isa, threads));
         const double ns = median_of(timing.fair(threads));
         row.value = 1e3 / ns;
@@ -169,7 +170,7 @@ void Table::domain() {
 }
 
 void Table::memory() {
-  const Course course(column_scene(*find_material("newtonian"), shrunk(million)), widest_);
+  const Course course(column_scene(*find_material("newtonian"), shrunk(million)), by(widest_));
   add({"memory of a liquid particle, all in", course.world().particles(), widest_, thread_count(),
        course.memory_per_particle() > 0 ? std::optional(course.memory_per_particle()) : std::nullopt, "B", 0,
        fmt::format("at most 64; columns and grids alone {:.0f}", bytes_per_particle(course.world()))});
@@ -177,18 +178,15 @@ void Table::memory() {
 
 void Table::frames() {
   const ThreadLimit limit(2);
-  // The dragon at full resolution: dx 6 mm, c + v = 49 m/s, cfl 1/2, 24 frames a second.
-  constexpr double steps = 49 / (0.5 * 0.006) / 24;
-  const Course course(column_scene(*find_material("newtonian"), shrunk(million)), widest_);
-  const FrameCost cost = frame_cost(course, widest_, 3);
-  add({"output, ledger and probes in a frame of the dragon", course.world().particles(), widest_, 2,
-       100 * cost.output / (cost.output + steps * cost.step), "%", 0,
-       fmt::format("at most 5; {:.2f} s beside {:.0f} steps of {:.3f} s", cost.output, steps, cost.step)});
+  const Course course(column_scene(*find_material("newtonian"), shrunk(million)), by(widest_));
+  BenchRow row = frame_row(course, by(widest_), widest_);
+  row.note = "at most 5; " + row.note;
+  add(std::move(row));
 }
 
 void Table::projection() {
   StepBenchOptions options;
-  options.cells = shrunk(million), options.threads = 2, options.isa = widest_;
+  options.cells = shrunk(million), options.threads = 2, options.backend = by(widest_);
   options.windows = options_.windows, options.window_seconds = options_.window_seconds;
   for (BenchRow& row : bench_projection(options)) add(std::move(row));
 }

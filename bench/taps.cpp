@@ -9,7 +9,6 @@
 #include "bench/bench_mesh.h"
 #include "bench/moment.h"
 #include "bench/scenes.h"
-#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/geometry/mesh.h"
@@ -108,24 +107,25 @@ TapText text_of(Tap tap) {
 
 }  // namespace
 
-TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const std::string& isa)
+TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const BackendChoice& choice)
     : tap_(tap), steps_per_piece_(options.large_steps ? large_steps : explicit_steps) {
   BenchScene scene = scene_of(options, tap);
-  engine_ = std::make_unique<Engine<float>>(std::move(scene.world), make_cpu_backend(isa));
+  engine_ = std::make_unique<Engine<float>>(std::move(scene.world), make_bench_backend(choice));
   engine_->begin(scene.seeds);
   scene.seeds = {};
   for (int n = 0; n < steps_per_piece_; ++n) step();
+  engine_->download(MatterFields::all);
   start_ = std::make_unique<const World<float>>(engine_->world());
 }
 
-TappedSteps TappedSteps::without_tap(const std::string& isa) const {
+TappedSteps TappedSteps::without_tap(const BackendChoice& choice) const {
   TappedSteps other;
   other.steps_per_piece_ = steps_per_piece_;
   auto start = std::make_unique<World<float>>(*start_);
   start->emitters.clear(), start->sinks.clear();
   for (Collider& c : start->colliders) c.twist = {};
   other.start_ = std::move(start);
-  other.engine_ = std::make_unique<Engine<float>>(World<float>(*other.start_), make_cpu_backend(isa));
+  other.engine_ = std::make_unique<Engine<float>>(World<float>(*other.start_), make_bench_backend(choice));
   return other;
 }
 
@@ -166,10 +166,13 @@ std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vec
   if (options.large_steps && options.material != "newtonian")
     fail_input("--solver projection: moves water; leave --material out");
   const ThreadLimit threads(options.threads);
-  const std::string isa(make_cpu_backend(options.isa)->isa()), solver = options.large_steps ? "projection" : "steps";
+  if (options.large_steps && !options.backend.on_host())
+    fail_input("--solver projection: it computes on processors; leave --backend {} out", options.backend.backend);
+  const std::string isa(make_bench_backend(options.backend)->isa()),
+      solver = options.large_steps ? "projection" : "steps";
   std::vector<BenchRow> rows;
   for (const Tap tap : taps) {
-    TappedSteps with(options, tap, isa), alone = with.without_tap(isa);
+    TappedSteps with(options, tap, options.backend), alone = with.without_tap(options.backend);
     Timing first, second;
     std::vector<double> shares, cpu_shares;
     for (int window = 0; window < options.windows; ++window) {
@@ -184,13 +187,14 @@ std::vector<BenchRow> bench_taps(const StepBenchOptions& options, const std::vec
     const auto add = [&](const TappedSteps& steps, const char* what, const Timing& timing) {
       const double ns = median_of(timing.fair(options.threads));
       rows.push_back({fmt::format("{} {}", solver, what), steps.particles(), isa, options.threads, 1e3 / ns, "M/s",
-                      spread_of(timing.fair(options.threads)), fmt::format("{:.1f} ns", ns)});
+                      spread_of(timing.fair(options.threads)), fmt::format("{:.1f} ns", ns), options.backend.backend});
     };
     add(alone, text.alone, first);
     add(with, text.with, second);
     rows.push_back({fmt::format("{}: cost of {}", solver, text.share), with.particles(), isa, options.threads,
                     median_of(shares), "%", 0,
-                    fmt::format("of the step; {:.1f} % of processor time", median_of(cpu_shares))});
+                    fmt::format("of the step; {:.1f} % of processor time", median_of(cpu_shares)),
+                    options.backend.backend});
   }
   return rows;
 }

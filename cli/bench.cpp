@@ -6,116 +6,19 @@
 #include "bench/edits.h"
 #include "bench/solvers.h"
 #include "bench/surfaces.h"
+#include "bench_print.h"
 #include "verbs.h"
 
 namespace dreampm::cli {
 namespace {
 using Json = nlohmann::ordered_json;
 
-/// Returns the facts that every measurement has to name.
-Json with_machine(const Json& more) {
-  Json all{{"machine", this_machine("", 0).cpu},
-           {"cores", this_machine("", 0).cores},
-           {"compiler", compiler},
-           {"commit", commit}};
-  all.update(more);
-  return all;
-}
-std::string machine_text() {
-  const MachineRecord machine = this_machine("", 0);
-  return fmt::format("{}, {} cores, {}, commit {}", machine.cpu, machine.cores, compiler, commit);
-}
-
-void print_json(const StepBenchResult& r, const Ceilings& c) {
-  const Floors floors = floors_of(r, c);
-  const Json result{{"name", "step"},
-                    {"material", r.material},
-                    {"particles", r.particles},
-                    {"droplets", r.droplets},
-                    {"cells", {r.cells.x, r.cells.y, r.cells.z}},
-                    {"threads", r.threads},
-                    {"isa", r.isa},
-                    {"ns_per_particle_step", r.ns_per_particle_step},
-                    {"cpu_ns_per_particle_step", r.cpu_ns},
-                    {"mps", r.mps},
-                    {"spread", r.spread},
-                    {"stages", r.stages},
-                    {"steps_per_sort", r.steps_per_sort},
-                    {"bytes_per_particle", r.bytes_per_particle},
-                    {"memory_per_particle", r.memory_per_particle},
-                    {"peak_memory_bytes", r.peak_memory_bytes},
-                    {"operations", r.operations},
-                    {"bytes_moved", r.bytes_moved},
-                    {"floors", {{"fma_ns", floors.fma_ns}, {"bandwidth_ns", floors.bandwidth_ns}}},
-                    {"windows", r.windows},
-                    {"cpu_windows", r.cpu_windows}};
-  const Json all = with_machine(
-      {{"ceilings", {{"fma_gflops", c.fma_gflops}, {"triad_gb_s", c.triad_gb_s}}}, {"results", Json::array({result})}});
-  fmt::print("{}\n", all.dump(2));
-}
-
-void print_text(const StepBenchResult& r, const Ceilings& c) {
-  const Floors floors = floors_of(r, c);
-  fmt::print("step, {}, {} particles{}, {} thread{}, {}: {:.1f} ns per particle-step, {:.2f} M particle-steps/s\n",
-             r.material, grouped(r.particles), r.droplets ? " in droplets" : "", r.threads, r.threads == 1 ? "" : "s",
-             r.isa, r.ns_per_particle_step, r.mps);
-  for (const auto& [stage, share] : r.stages) fmt::print("  {:<10}{:5.1f} %\n", stage, 100 * share);
-  fmt::print("  a sort every {:.1f} steps; windows:", r.steps_per_sort);
-  for (const double w : r.windows) fmt::print(" {:.1f}", w);
-  fmt::print(" ns, spread {:.1f} %\n", 100 * r.spread);
-  fmt::print("  {:.0f} bytes a particle in columns and grids, {:.0f} all in, {} at most\n", r.bytes_per_particle,
-             r.memory_per_particle, bytes_text(r.peak_memory_bytes));
-  fmt::print("  the machine's ceilings: {:.0f} Gflop/s of multiply-adds, {:.1f} GB/s of memory\n", c.fma_gflops,
-             c.triad_gb_s);
-  fmt::print("  floors: {:.1f} ns for {:.0f} operations ({:.1f} x), {:.1f} ns for {:.0f} bytes ({:.1f} x)\n",
-             floors.fma_ns, r.operations, r.ns_per_particle_step / floors.fma_ns, floors.bandwidth_ns, r.bytes_moved,
-             r.ns_per_particle_step / floors.bandwidth_ns);
-  fmt::print("  {}\n", machine_text());
-}
-
-Json json_of(const BenchRow& r) {
-  Json row{{"case", r.what}, {"particles", r.particles}, {"isa", r.isa}, {"threads", r.threads}};
-  row["value"] = r.value ? Json(*r.value) : Json();
-  row.update(Json{{"unit", r.unit}, {"spread", r.spread}, {"note", r.value ? r.note : "not run here"}});
-  return row;
-}
-
-/// A line of a markdown table.
-std::string line_of(const BenchRow& r) {
-  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", r.what, r.particles ? grouped(r.particles) : "", r.isa,
-                     r.threads, r.value ? fmt::format("{:.3g} {}", *r.value, r.unit) : "not run here",
-                     r.spread > 0 ? fmt::format("{:.1f} %", 100 * r.spread) : "", r.note);
-}
-
-void print_head(int shrink) {
-  fmt::print("{}\n\n", machine_text());
-  if (shrink > 1) fmt::print("Scenes are {} times shorter than they should be: no figure of speed.\n\n", shrink);
-  fmt::print("| case | particles | ISA | threads | result | spread | |\n|---|---|---|---|---|---|---|\n");
-}
-
-void print_rows(const std::vector<BenchRow>& rows, int shrink, bool json) {
-  if (!json) {
-    print_head(1);
-    for (const BenchRow& r : rows) fmt::print("{}\n", line_of(r));
-    return;
-  }
-  Json all = Json::array();
-  for (const BenchRow& r : rows) all.push_back(json_of(r));
-  fmt::print("{}\n", with_machine({{"shrink", shrink}, {"results", all}}).dump(2));
-}
-
-int run_table(TableOptions options, bool json) {
-  if (!json) {
-    // The head comes with the first row: what cannot be measured has no table.
-    options.each = [shrink = options.shrink, begun = false](const BenchRow& r) mutable {
-      if (!std::exchange(begun, true)) print_head(shrink);
-      fmt::print("{}\n", line_of(r));
-      std::fflush(stdout);
-    };
-  }
-  const std::vector<BenchRow> rows = bench_table(options);
-  if (json) print_rows(rows, options.shrink, true);
-  return 0;
+/// --backend of what is measured, and --isa of cpu; `rest` of the text about it.
+void add_backend(CLI::App& verb, BackendChoice& choice, const std::string& rest = {}) {
+  verb.add_option("--backend", choice.backend,
+                  "which is measured: " + fmt::format("{}", fmt::join(backend_names(), ", ")) + rest)
+      ->check(CLI::IsMember(backend_names()))
+      ->capture_default_str();
 }
 
 void add_step(CLI::App& bench, Action& action) {
@@ -124,6 +27,7 @@ void add_step(CLI::App& bench, Action& action) {
     std::vector<int> cells;
     std::string solver = "explicit";
     std::array<bool, 4> taps{};  ///< by Tap
+    std::optional<int> threads;
     bool json = false, each = false;
   };
   auto a = std::make_shared<Arguments>();
@@ -150,8 +54,10 @@ void add_step(CLI::App& bench, Action& action) {
       {"--edit", "the same of changing a value of the material before every step"}};
   for (std::size_t t = 0; t < a->taps.size(); ++t)
     verb->add_flag(taps[t].first, a->taps[t], taps[t].second)->excludes("--droplets");
-  verb->add_option("--threads", a->options.threads, "threads")->capture_default_str()->transform(whole_number(1, 4096));
-  verb->add_option("--isa", a->options.isa, "auto, sse4, avx2 or avx512")->capture_default_str();
+  add_backend(*verb, a->options.backend);
+  verb->add_option("--threads", a->threads, "threads (default: 1, beside a device all)")
+      ->transform(whole_number(1, 4096));
+  verb->add_option("--isa", a->options.backend.isa, "of cpu: auto, sse4, avx2 or avx512")->capture_default_str();
   verb->add_option("--windows", a->options.windows, "measurements, of which the median counts")
       ->capture_default_str()
       ->transform(whole_number(1, 1000000));
@@ -163,6 +69,7 @@ void add_step(CLI::App& bench, Action& action) {
       ->excludes(json);
   verb->callback([a, &action] {
     action = [a] {
+      a->options.threads = a->threads.value_or(a->options.backend.on_host() ? 1 : thread_count());
       if (!a->cells.empty()) a->options.cells = Vec3i{a->cells[0], a->cells[1], a->cells[2]};
       if (a->each)
         a->options.each = [](double ns, double cpu_ns) {
@@ -174,7 +81,7 @@ void add_step(CLI::App& bench, Action& action) {
         if (a->taps[static_cast<std::size_t>(tap)]) asked.push_back(tap);
       if (!asked.empty()) {
         a->options.large_steps = a->solver == "projection";
-        print_rows(bench_taps(a->options, asked), 1, a->json);
+        print_rows(bench_taps(a->options, asked), 1, a->json, device_text(a->options.backend));
         return 0;
       }
       if (a->solver == "projection") {
@@ -182,30 +89,59 @@ void add_step(CLI::App& bench, Action& action) {
         return 0;
       }
       const StepBenchResult r = bench_step(a->options);
-      const Ceilings ceilings = measure_ceilings(r.isa, r.threads);
-      a->json ? print_json(r, ceilings) : print_text(r, ceilings);
+      std::optional<Ceilings> ceilings;
+      if (r.device.empty()) ceilings = measure_ceilings(r.isa, r.threads);
+      print_step(r, ceilings, a->json);
       return 0;
     };
   });
 }
 
 void add_all(CLI::App& bench, Action& action) {
-  auto options = std::make_shared<TableOptions>();
-  auto json = std::make_shared<bool>(false);
+  struct Arguments {
+    TableOptions options;
+    BackendChoice backend;
+    std::uint64_t largest = DeviceTableOptions{}.largest;
+    bool json = false;
+  };
+  auto a = std::make_shared<Arguments>();
   CLI::App* verb = add_verb(bench, "all", "What the machine can do, then every case, as a markdown table; minutes",
                             "dreampm bench all --isa avx2");
-  verb->add_option("--isa", options->isa, "only this one: sse4, avx2 or avx512");
-  verb->add_option("--windows", options->windows, "measurements of each row, of which the median counts")
+  add_backend(*verb, a->backend, "; of one with a device, steps of up to 64 million particles");
+  auto* isa = verb->add_option("--isa", a->options.isa, "of cpu only this one: sse4, avx2 or avx512");
+  auto* largest = verb->add_option("--largest", a->largest, "of a device: no row of more particles")
+                      ->capture_default_str()
+                      ->transform(whole_number(64, 200000000));
+  verb->add_option("--windows", a->options.windows, "measurements of each row, of which the median counts")
       ->capture_default_str()
       ->transform(whole_number(1, 1000));
-  verb->add_option("--seconds", options->window_seconds, "the least length of each")
+  verb->add_option("--seconds", a->options.window_seconds, "the least length of each")
       ->capture_default_str()
       ->check(number_in(0, 1000));
-  verb->add_option("--shrink", options->shrink, "divide the lengths of every scene: only to see that it works")
-      ->capture_default_str()
-      ->transform(whole_number(1, 16));
-  verb->add_flag("--json", *json, "print JSON");
-  verb->callback([options, json, &action] { action = [options, json] { return run_table(*options, *json); }; });
+  auto* shrink = verb->add_option("--shrink", a->options.shrink,
+                                  "of cpu: divide the lengths of every scene: only to see that it works")
+                     ->capture_default_str()
+                     ->transform(whole_number(1, 16));
+  verb->add_flag("--json", a->json, "print JSON");
+  verb->callback([=, &action] {
+    action = [=] {
+      const bool cpu = a->backend.backend == BackendChoice{}.backend;
+      for (const CLI::Option* option : cpu ? std::vector{largest} : std::vector{isa, shrink})
+        if (option->count() > 0)
+          fail_input("{}: not with --backend {}; leave it out", option->get_name(), a->backend.backend);
+      const MeasureTable table = [&](const EachRow& each) {
+        TableOptions options = a->options;
+        options.each = each;
+        return bench_table(options);
+      };
+      const MeasureTable of_device = [&](const EachRow& each) {
+        return bench_device_table(
+            {a->backend.backend, a->largest, a->options.windows, a->options.window_seconds, each});
+      };
+      print_table(a->options.shrink, device_text(a->backend), a->json, cpu ? table : of_device);
+      return 0;
+    };
+  });
 }
 
 void add_frames(CLI::App& bench, Action& action) {
@@ -264,6 +200,7 @@ void add_edits(CLI::App& bench, Action& action) {
   verb->add_option("--particles", a->options.particles, "about how many")
       ->capture_default_str()
       ->transform(whole_number(1000, 100000000));
+  add_backend(*verb, a->options.backend);
   verb->add_option("--faces", a->options.faces, "about how many, of the mesh beside them")
       ->capture_default_str()
       ->transform(whole_number(100, 10000000));
@@ -274,7 +211,7 @@ void add_edits(CLI::App& bench, Action& action) {
   verb->add_flag("--json", a->json, "print JSON");
   verb->callback([a, &action] {
     action = [a] {
-      print_rows(bench_edits(a->options), 1, a->json);
+      print_rows(bench_edits(a->options), 1, a->json, device_text(a->options.backend));
       return 0;
     };
   });

@@ -4,6 +4,7 @@
 
 #include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/backend/gpu/cuda/cuda.h"
+#include "dreampm/backend/registry.h"
 #include "dreampm/pipeline/fill_report.h"
 #include "dreampm/render/denoise.h"
 #include "verbs.h"
@@ -128,9 +129,14 @@ int print_program(bool json) {
 
 int print_device(bool json) {
   const gpu::CudaState cuda = gpu::find_cuda();
-  if (json)
-    fmt::print("{}\n", Json{{"kind", "device"}, {"found", cuda.found}, {"text", cuda.text}}.dump(2));
-  else
+  if (json) {
+    Json j{{"kind", "device"}, {"found", cuda.found}, {"text", cuda.text}};
+    if (cuda.found) {
+      const DeviceFacts device = backend_info("cuda").device();
+      j["name"] = device.about, j["free_bytes"] = device.free, j["memory_bytes"] = device.all;
+    }
+    fmt::print("{}\n", j.dump(2));
+  } else
     fmt::print("{}\n", cuda.text);
   return cuda.found ? 0 : 1;
 }

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <set>
 
 #include "bench/bench.h"
 #include "bench/course.h"
 #include "bench/operations.h"
 #include "dreampm/physics/materials.h"
+#include "dreampm/state/particle_view.h"
 
 namespace dreampm {
 namespace {
@@ -68,7 +71,7 @@ TEST(Counted, ALawGivesTheSameNumbers) {
 TEST(Bench, AStepHasAtLeastTheWorkOfItsStencils) {
   std::map<std::string, double> work;
   for (const MaterialInfo& m : material_infos()) {
-    const Course course(column_scene(m, {4, 4, 4}), "auto");
+    const Course course(column_scene(m, {4, 4, 4}), {});
     const OperationCount n = operations_of(course.world());
     // Gather and scatter: three components of 27 nodes each way, at one operation each, is less
     // than any way of doing it.
@@ -86,9 +89,9 @@ TEST(Bench, AStepHasAtLeastTheWorkOfItsStencils) {
 
 TEST(Bench, TheColumnMovesATwentiethOfACellAStep) {
   for (const char* name : {"newtonian", "snow"}) {
-    const Course course(column_scene(*find_material(name), {8, 8, 4}), "auto");
+    const Course course(column_scene(*find_material(name), {8, 8, 4}), {});
     EXPECT_EQ(course.world().particles(), 8u * 8 * 8 * 4);
-    const Timing t = course.run("auto", {3, 0, {}});
+    const Timing t = course.run({}, {3, 0, {}});
     EXPECT_EQ(t.windows.size(), 3u);
     EXPECT_GT(t.steps_per_sort, 14) << name;
     EXPECT_LT(t.steps_per_sort, 23) << name;
@@ -102,8 +105,31 @@ TEST(Bench, TheColumnMovesATwentiethOfACellAStep) {
   }
 }
 
+/// The places of a world's first set, by id.
+std::map<std::uint32_t, Vec3d> places(const World<float>& world) {
+  std::map<std::uint32_t, Vec3d> all;
+  const ParticleSetView<float> set(world, 0);
+  set.for_each([&](std::size_t p, const Vec3d& x) { all[set.id(p)] = x; });
+  return all;
+}
+
+TEST(Bench, ACourseBringsHomeWhatADeviceMoved) {
+  ASSERT_EQ(::setenv("DREAMPM_CUDA", STAND_IN, 1), 0);
+  const BenchScene scene = column_scene(*find_material("snow"), {4, 4, 4});
+  const auto there = places(Course(scene, {"cuda"}).world()), here = places(Course(scene, {}).world());
+  ASSERT_EQ(there.size(), scene.seeds[0].size());
+  double apart = 0, moved = 0;
+  for (const ParticleSeed& s : scene.seeds[0]) {
+    apart = std::max(apart, length(there.at(s.id) - here.at(s.id)));
+    moved = std::max(moved, length(there.at(s.id) - s.position));
+  }
+  // A sort's distance; a step is a twentieth of a cell.
+  EXPECT_GT(moved, 0.5 * bench_dx);
+  EXPECT_LT(apart, 0.002 * bench_dx);
+}
+
 TEST(Bench, MemoryIsWhatTheProcessTook) {
-  const Course course(column_scene(*find_material("newtonian"), {40, 40, 20}), "auto");
+  const Course course(column_scene(*find_material("newtonian"), {40, 40, 20}), {});
   // Position, state and id at least; and no more than the arrays of a few steps.
   EXPECT_GT(course.memory_per_particle(), 20);
   EXPECT_LT(course.memory_per_particle(), 300);

@@ -20,6 +20,11 @@ constexpr BackendInfo table[] = {
      [] {
        const gpu::CudaState state = gpu::find_cuda();
        return state.found ? std::string() : state.text;
+     },
+     [] {
+       const std::unique_ptr<gpu::Device> device = gpu::make_cuda_device();
+       const gpu::Device::Memory memory = device->memory();
+       return DeviceFacts{device->about(), memory.free, memory.all};
      }},
 };
 
@@ -40,10 +45,12 @@ std::vector<std::string> backends_here() {
   return names;
 }
 
-AnyBackend make_backend(std::string_view name, std::string_view isa) {
+const BackendInfo& backend_info(std::string_view name) {
   for (const BackendInfo& b : backends())
-    if (name.empty() || name == b.name) return b.make(isa);
+    if (name.empty() || name == b.name) return b;
   fail_input("backend {} is not known; there are {}", name, fmt::join(backend_names(), ", "));
 }
+
+AnyBackend make_backend(std::string_view name, std::string_view isa) { return backend_info(name).make(isa); }
 
 }  // namespace dreampm
