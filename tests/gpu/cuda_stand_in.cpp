@@ -7,12 +7,13 @@
 #include "dreampm/backend/gpu/cuda/cuda_library.h"
 #include "dreampm/backend/gpu/host_device.h"
 #include "dreampm/backend/gpu/kernels.h"
+#include "dreampm/kernel_sources.h"
 
 namespace dreampm::gpu {
 namespace {
 
 // Numbers of devices that behave badly.
-constexpr int full = 1, failing = 2;
+constexpr int full = 1, failing = 2, small = 3;
 struct Opened {
   std::unique_ptr<Device> host;
   int number;
@@ -22,7 +23,7 @@ Opened& opened(void* device) { return *static_cast<Opened*>(device); }
 const char* open(int number, void** device) {
   // Tests choose it where the command asks for the first.
   if (const char* const chosen = std::getenv("DREAMPM_STAND_IN")) number = std::atoi(chosen);
-  if (number > failing) return "there is no device of that number";
+  if (number > small) return "there is no device of that number";
   *device = new Opened{make_host_device(), number};
   return nullptr;
 }
@@ -31,8 +32,8 @@ const char* about(void*, const char** name, int* major, int* minor, std::size_t*
   *name = "Stand-in", *major = 9, *minor = 0, *memory = std::size_t{1} << 30;
   return nullptr;
 }
-const char* memory(void*, std::size_t* free, std::size_t* all) {
-  *free = std::size_t{1} << 29, *all = std::size_t{1} << 30;
+const char* memory(void* device, std::size_t* free, std::size_t* all) {
+  *free = std::size_t{1} << (opened(device).number == small ? 16 : 29), *all = std::size_t{1} << 30;
   return nullptr;
 }
 const char* allocate(void* device, std::size_t bytes, void** memory) {
@@ -55,8 +56,18 @@ const char* launch(void* device, int kernel, const void* arguments, int blocks) 
   return nullptr;
 }
 
-constexpr CudaLibrary library{
-    STAND_IN_VERSION, Kernels::fingerprint(), open, close, about, memory, allocate, release, upload, download, launch};
+constexpr CudaLibrary library{STAND_IN_VERSION,
+                              Kernels::fingerprint(),
+                              STAND_IN_SOURCES,
+                              open,
+                              close,
+                              about,
+                              memory,
+                              allocate,
+                              release,
+                              upload,
+                              download,
+                              launch};
 
 }  // namespace
 }  // namespace dreampm::gpu

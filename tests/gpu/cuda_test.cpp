@@ -48,6 +48,7 @@ TEST_F(Cuda, SaysWhyThereIsNone) {
   EXPECT_FALSE(std::filesystem::exists(folder / "none"));
   EXPECT_THAT(with(STAND_IN_OF_ANOTHER, "info --device").out,
               AllOf(HasSubstr("belongs to another DreaMPM"), HasSubstr("0.0.1"), HasSubstr("make cuda")));
+  EXPECT_THAT(with(STAND_IN_CHANGED, "info --device").out, HasSubstr("belongs to another DreaMPM"));
   EXPECT_THAT(with("libm.so.6", "info --device").out, HasSubstr("is no library of DreaMPM"));
   EXPECT_EQ(type("info dam.yaml --device").code, 2);
 }
@@ -62,7 +63,11 @@ TEST_F(Cuda, NamesTheDeviceThatFails) {
   const Typed failing = chosen("2", "run dam.yaml --backend cuda --out failing");
   EXPECT_EQ(failing.code, 1);
   EXPECT_THAT(failing.err, AllOf(HasSubstr("Stand-in"), HasSubstr("illegal memory access")));
-  EXPECT_THAT(chosen("3", "info --device").out, HasSubstr("CUDA device 0: there is no device of that number"));
+  const Typed small = chosen("3", "run dam.yaml --backend cuda --out small");
+  EXPECT_EQ(small.code, 1);
+  EXPECT_THAT(small.err,
+              AllOf(HasSubstr("160 particles need about"), HasSubstr("0.1 MB are free"), HasSubstr("spacing")));
+  EXPECT_THAT(chosen("4", "info --device").out, HasSubstr("CUDA device 0: there is no device of that number"));
 }
 
 }  // namespace

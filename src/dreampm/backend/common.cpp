@@ -91,17 +91,12 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
           static_cast<R>(world.node_speed / std::sqrt(3.0))};
 }
 
-namespace {
-
-/// The colliders' share of one block of the mixture.
 template <class R>
 void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, Node<R>* nodes) {
   const Vec3i first = world.grid.blocks[block] * block_width;
   for (const ObstacleNode& o : obstacles.at(block))
     mixture::blocked(nodes[o.node]) += without_images(world, first + node_offset(o.node), static_cast<R>(o.taken));
 }
-
-}  // namespace
 
 template <class R>
 void fit_grid(const World<R>& world, GridFields<R>& next) {
@@ -178,6 +173,7 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
   template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                              \
   template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);                 \
   template void fit_grid(const World<R>&, GridFields<R>&);                                              \
+  template void add_colliders(const World<R>&, const Obstacles&, std::size_t, Node<R>*);                \
   template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t);            \
   template void begin_pass(World<R>&, const Obstacles&, const MirrorWalls<R>&, GridFields<R>&, double); \
   template void swap_fields(GridFields<R>&, GridFields<R>&);                                            \

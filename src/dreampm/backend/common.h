@@ -129,6 +129,9 @@ SetStep<R> set_step(const World<R>& world, const ParticleSet<R>& set, double dt,
 /// Makes the fields of `next` as long as the world's. The block list is left alone.
 template <class R>
 void fit_grid(const World<R>& world, GridFields<R>& next);
+/// Adds the colliders' share to the mixture at the nodes of a block.
+template <class R>
+void add_colliders(const World<R>& world, const Obstacles& obstacles, std::size_t block, Node<R>* nodes);
 /// Zeroes one of its blocks, and fills in the colliders' share of the mixture.
 template <class R>
 void clear_block(const World<R>& world, const Obstacles& obstacles, GridFields<R>& next, std::size_t block);

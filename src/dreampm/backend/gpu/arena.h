@@ -77,6 +77,8 @@ struct ScatterUnits {
 };
 /// The largest power of two whose product with `most` is at most 2^30; `most` >= 0.
 DM_FN float counts_per_unit(float most) { return exp2_int(29.0f - exponent_of(max(most, 1e-25f))); }
+/// What one count is: the reciprocal of such a power of two, exactly.
+DM_FN double per_count(float counts) { return static_cast<double>(exp2_int(-exponent_of(counts))); }
 /// The larger of each.
 DM_FN ScatterBounds largest(const ScatterBounds& a, const ScatterBounds& b) {
   return {max(a.speed, b.speed), max(a.mass, b.mass), max(a.volume_ratio, b.volume_ratio),

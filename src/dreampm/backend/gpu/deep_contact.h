@@ -50,8 +50,8 @@ struct MeetDeep {
         shared.given[t] = ImpulseTerms<float>::none();
         for (std::uint32_t d = group.begin; d < group.end; ++d)
           if (nodes[d].node == t)
-            shared.given[t] = meet(nodes[d], colliders[group.collider],
-                                   in.grid.field[0][std::int64_t{at.block} * block_nodes + t]);
+            shared.given[t] =
+                meet(nodes[d], colliders[group.collider], in.grid.field[0][std::int64_t{at.block} * block_nodes + t]);
       });
       add_up_threads<threads>(block, shared.given);
       block.each_thread([&](int t) {
@@ -65,8 +65,8 @@ struct MeetDeep {
     ImpulseSumOf<float> sum;
     if (has_mass(node)) {
       const Vec3<float> before = velocity(node),
-                        after = contact(before - at.velocity, at.normal, collider.type, collider.friction) +
-                                at.velocity;
+                        after =
+                            contact(before - at.velocity, at.normal, collider.type, collider.friction) + at.velocity;
       set_velocity(node, after);
       sum.add(static_cast<Vec3<float>>(node_offset(at.node)), node.m, before, after, after);
     }

@@ -31,6 +31,13 @@ class Device {
   /// Launches kernel `number` of the list with that many blocks of threads. `arguments`: the kernel
   /// itself. Throws RunError where an earlier one failed.
   virtual void launch(int number, const void* arguments, int blocks) = 0;
+  /// Bytes that all Buffers have of it.
+  std::size_t held() const { return held_; }
+
+ private:
+  template <class T>
+  friend class Buffer;
+  std::size_t held_ = 0;
 };
 
 /// An array in a device's memory. It grows, and keeps its room.
@@ -38,7 +45,7 @@ template <class T>
 class Buffer {
  public:
   explicit Buffer(Device& device) : device_(&device) {}
-  ~Buffer() { device_->release(data_); }
+  ~Buffer() { drop(); }
   Buffer(Buffer&& b) noexcept
       : device_(b.device_),
         data_(std::exchange(b.data_, nullptr)),
@@ -52,11 +59,11 @@ class Buffer {
   /// Contents are undefined after it, where it grows.
   void resize(std::size_t size) {
     if (size > room_) {
-      device_->release(std::exchange(data_, nullptr));
-      room_ = size_ = 0;
+      drop();
       const std::size_t wanted = size + size / 8;
       data_ = static_cast<T*>(device_->allocate(wanted * sizeof(T)));
       room_ = wanted;
+      device_->held_ += room_ * sizeof(T);
     }
     size_ = size;
   }
@@ -77,6 +84,12 @@ class Buffer {
   }
 
  private:
+  void drop() {
+    device_->held_ -= room_ * sizeof(T);
+    device_->release(std::exchange(data_, nullptr));
+    room_ = size_ = 0;
+  }
+
   Device* device_;
   T* data_ = nullptr;
   std::size_t room_ = 0, size_ = 0;

@@ -9,6 +9,7 @@
 
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/gpu/grid_visit.h"
+#include "dreampm/backend/gpu/memory_need.h"
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
@@ -36,6 +37,7 @@ class Gpu final : public Backend<float> {
   void attach(const World<float>& world) override {
     obstacles_.forget();
     home_ = MatterFields::all;
+    gpu::check_room(*device_, world);
     refresh(world);
     upload_particles(world);
   }
@@ -64,6 +66,7 @@ class Gpu final : public Backend<float> {
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
     bring_home(world, MatterFields::all);
     insert(world, set, seeds);
+    gpu::check_room(*device_, world);
     refresh(world);
     upload_particles(world);
     return scatter_seeds(world, set, seeds, obstacles_);
@@ -203,9 +206,12 @@ class Gpu final : public Backend<float> {
   }
   void upload_obstacles(const World<float>& world) {
     std::vector<BlockWalls<float>> walls(world.particle_blocks.size());
-    for (std::size_t b = 0; b < walls.size(); ++b)
+    std::vector<std::uint32_t> beside, apart;
+    for (std::size_t b = 0; b < walls.size(); ++b) {
       walls[b] = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, stencil_blocks_[b]));
-    memory_.walls.upload(walls);
+      (walls[b].colliders ? beside : apart).push_back(static_cast<std::uint32_t>(b));
+    }
+    memory_.walls.upload(walls), memory_.beside.upload(beside), memory_.apart.upload(apart);
     memory_.clearance.upload(obstacles_.clearance());
     based_ = false;
   }
@@ -213,9 +219,12 @@ class Gpu final : public Backend<float> {
   /// The colliders' share of the mixture, with which the grid of the step to come begins.
   void upload_base(const World<float>& world) {
     if (based_) return;
-    if (!next_.mixture.empty())
-      parallel_for(world.grid.blocks.size(), 32, [&](std::size_t b) { clear_block(world, obstacles_, next_, b); });
-    memory_.base.upload(next_.mixture);
+    Nodes<float>& base = next_.mixture;
+    std::fill(base.begin(), base.end(), Node<float>{});
+    if (!base.empty() && obstacles_.any())
+      parallel_for(world.grid.blocks.size(), 32,
+                   [&](std::size_t b) { add_colliders(world, obstacles_, b, base.data() + b * block_nodes); });
+    memory_.base.upload(base);
     based_ = true;
   }
   /// Distances from colliders that are too thin for the splines between the nodes.

@@ -31,9 +31,9 @@ struct SumArenas {
         const BlockLoad& load = loads[arena[s]];
         const ScatterUnits units = field == 2 ? mixture_units(load, bounds) : field_units(load, field, bounds);
         const NodeCounts& count = counts[std::int64_t{arena[s]} * arena_nodes + number_in_arena(corner[s], n)];
-        const double momentum = 1 / static_cast<double>(units.momentum);
+        const double momentum = per_count(units.momentum), mass = per_count(units.mass);
         sum[0] += count.x * momentum, sum[1] += count.y * momentum, sum[2] += count.z * momentum;
-        sum[3] += count.m / static_cast<double>(units.mass);
+        sum[3] += count.m * mass;
       }
       const std::int64_t at = std::int64_t{g} * block_nodes + n;
       Node<float> node{static_cast<float>(sum[0]), static_cast<float>(sum[1]), static_cast<float>(sum[2]),

@@ -17,6 +17,12 @@ ScatterBounds assumed_bounds(const World<float>& world, double speed) {
                   static_cast<float>(std::max(viscosity, world.viscosity))});
 }
 
+/// True if anything asks what matter there is at a node; colliders give their share alone.
+bool matter_counts_in_mixture(const World<float>& world) {
+  return world.needs_solid_field() || world.has_skin_friction() || world.measures_by_volume(0) ||
+         world.measures_by_volume(1);
+}
+
 }  // namespace
 
 void ParticlePasses::prepare(std::size_t particle_blocks) {
@@ -49,7 +55,8 @@ PassInput ParticlePasses::input_of(const World<float>& world, std::size_t s, boo
   const ParticleSet<float>& set = world.sets[s];
   const SetMemory& memory = memory_.sets[s];
   const std::size_t field = world.field_of(set);
-  PassInput in{memory.now.pointers(set.transfer.keeps_velocity()),
+  PassInput in{nullptr,
+               memory.now.pointers(set.transfer.keeps_velocity()),
                memory.block_start.data(),
                memory_.stencil_blocks.data(),
                memory_.walls.data(),
@@ -109,21 +116,31 @@ void ParticlePasses::launch_pass(const PassStep& pass, std::size_t s, const Scat
   out.field = arena(of_field(nodes, field), pass.next);
   if (keeps) out.velocity_old = arena(of_field(old_nodes, field), pass.next);
   if (step.sub_cycled) out.stress = arena(of_field(stress_nodes, field), pass.next);
-  out.mixture = arena(mixture_share, pass.next);
+  if (matter_counts_in_mixture(world)) out.mixture = arena(mixture_share, pass.next);
   out.sums = memory_.block_sums.data();
   if (pass.looks) memory.output_to(out);
-  const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts && world.colliders.empty();
+  const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts;
   Materials::with(set.material, [&]<class M>() {
-    const auto with = [&]<bool relaxes, bool is_plain>() {
-      launch(Pass<M, relaxes, is_plain>{M::template Law<float>::from(set.values), step, bounds,
-                                        input_of(world, s, pass.thin), out, static_cast<int>(field),
-                                        world.measures_by_volume(field)},
-             blocks_);
+    const auto law = M::template Law<float>::from(set.values);
+    const auto visit = [&]<bool relaxes, bool is_plain>(const Buffer<std::uint32_t>* some) {
+      Pass<M, relaxes, is_plain> kernel{law,
+                                        step,
+                                        bounds,
+                                        input_of(world, s, pass.thin),
+                                        out,
+                                        static_cast<int>(field),
+                                        world.measures_by_volume(field)};
+      if (some) kernel.in.some = some->data();
+      launch(kernel, some ? some->size() : blocks_);
+    };
+    const auto all = [&]<bool relaxes>() {
+      if (!plain) return visit.template operator()<relaxes, false>(nullptr);
+      visit.template operator()<relaxes, true>(&memory_.apart);
+      visit.template operator()<relaxes, false>(&memory_.beside);
     };
     if constexpr (VolumeRelaxed<M>)
-      if (step.volume_relaxation > 0)
-        return plain ? with.template operator()<true, true>() : with.template operator()<true, false>();
-    plain ? with.template operator()<false, true>() : with.template operator()<false, false>();
+      if (step.volume_relaxation > 0) return all.template operator()<true>();
+    all.template operator()<false>();
   });
 }
 

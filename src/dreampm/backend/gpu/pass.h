@@ -21,6 +21,7 @@ struct ParticleColumns {
 
 /// Where the particles of a set lie, and what they gather from.
 struct PassInput {
+  const std::uint32_t* some;  ///< the blocks of particles that the pass visits; null: all
   ParticleColumns particles;
   const std::uint32_t* block_start;    ///< by block of particles, and the end
   const std::int32_t* stencil_blocks;  ///< eight a block of particles, as StencilBlocks
@@ -45,7 +46,8 @@ struct PassOutput {
 };
 
 /// `relaxes`: whether this step relaxes the volume of liquids. `plain`: the set keeps no
-/// velocities, and there is no mixture, no collider and no stage of viscosity. Whether somebody
+/// velocities and gives nothing to a mixture, there is no stage of viscosity, and no collider is
+/// near the blocks that it visits. Whether somebody
 /// looks at the motion does not decide: compilers of device code may round two kernels differently.
 template <class M, bool relaxes, bool plain>
 struct Pass {
@@ -80,7 +82,7 @@ struct Pass {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    const int b = block.index();
+    const int b = in.some ? static_cast<int>(in.some[block.index()]) : block.index();
     block.each_thread([&](int t) {
       copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.arena.nodes);
       clear<threads>(t, shared.arena.field);

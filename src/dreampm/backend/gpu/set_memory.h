@@ -224,6 +224,8 @@ class Memory {
       : sources(device),
         stencil_blocks(device),
         walls(device),
+        beside(device),
+        apart(device),
         loads(device),
         clearance(device),
         base(device),
@@ -238,6 +240,7 @@ class Memory {
   SourceLists sources;
   Buffer<std::int32_t> stencil_blocks;
   Buffer<BlockWalls<float>> walls;
+  Buffer<std::uint32_t> beside, apart;  ///< blocks of particles that colliders are near, and others
   Buffer<BlockLoad> loads;
   Buffer<Node<float>> clearance, base;
   std::vector<Buffer<Node<float>>> nodes;  ///< by Target

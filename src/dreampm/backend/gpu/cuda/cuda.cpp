@@ -11,6 +11,7 @@
 #include "dreampm/backend/gpu/cuda/cuda_library.h"
 #include "dreampm/backend/gpu/kernels.h"
 #include "dreampm/base/error.h"
+#include "dreampm/kernel_sources.h"
 #include "dreampm/version.h"
 
 namespace dreampm::gpu {
@@ -49,7 +50,8 @@ Loaded load(const std::string& file) {
   const auto entry = reinterpret_cast<CudaLibraryEntry>(dlsym(handle, cuda_library_entry));
   if (entry == nullptr) return {nullptr, fmt::format("{} is no library of DreaMPM", file)};
   const CudaLibrary* const library = entry();
-  if (std::string(library->version) != version || library->kernels != Kernels::fingerprint())
+  if (std::string(library->version) != version || library->kernels != Kernels::fingerprint() ||
+      library->sources != kernel_sources)
     return {nullptr, fmt::format("{} belongs to another DreaMPM, of version {}: `make cuda` makes the one that fits",
                                  file, library->version)};
   return {library, {}};

@@ -6,6 +6,7 @@
 
 #include "dreampm/backend/gpu/device_block.h"
 #include "dreampm/backend/gpu/kernels.h"
+#include "dreampm/kernel_sources.h"
 
 namespace dreampm::gpu {
 namespace {
@@ -23,9 +24,13 @@ const Launch* launches_of(KernelList<K...>) {
   return all;
 }
 
+/// The library holds machine code and PTX for this and what came after.
+constexpr int least_capability = 8;
+
 struct Opened {
   int number;
   cudaStream_t stream;
+  cudaDeviceProp facts;
 };
 Opened& opened(void* device) { return *static_cast<Opened*>(device); }
 
@@ -42,7 +47,9 @@ const char* open(int number, void** device) {
   int count = 0;
   if (const cudaError_t error = cudaGetDeviceCount(&count)) return message(error);
   if (number < 0 || number >= count) return "there is no device of that number";
-  Opened one{number, nullptr};
+  Opened one{number, nullptr, {}};
+  if (const cudaError_t error = cudaGetDeviceProperties(&one.facts, number)) return message(error);
+  if (one.facts.major < least_capability) return "its compute capability is below 8.0";
   if (const cudaError_t error = cudaSetDevice(number)) return message(error);
   if (const cudaError_t error = cudaStreamCreateWithFlags(&one.stream, cudaStreamNonBlocking)) return message(error);
   *device = new Opened(one);
@@ -53,8 +60,7 @@ void close(void* device) {
   delete &opened(device);
 }
 const char* about(void* device, const char** name, int* major, int* minor, std::size_t* memory) {
-  static cudaDeviceProp facts;
-  if (const cudaError_t error = cudaGetDeviceProperties(&facts, opened(device).number)) return message(error);
+  const cudaDeviceProp& facts = opened(device).facts;
   *name = facts.name, *major = facts.major, *minor = facts.minor, *memory = facts.totalGlobalMem;
   return nullptr;
 }
@@ -89,8 +95,8 @@ const char* launch(void* device, int kernel, const void* arguments, int blocks) 
   return message(cudaGetLastError());
 }
 
-constexpr CudaLibrary library{DM_VERSION, Kernels::fingerprint(), open,   close,    about, memory,
-                              allocate,        release,       upload, download, launch};
+constexpr CudaLibrary library{DM_VERSION, Kernels::fingerprint(), kernel_sources, open,   close,    about,
+                              memory,     allocate,               release,        upload, download, launch};
 
 }  // namespace
 }  // namespace dreampm::gpu

@@ -1,0 +1,36 @@
+#include "dreampm/backend/gpu/memory_need.h"
+
+#include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/base/error.h"
+#include "dreampm/state/world_fields.h"
+
+namespace dreampm::gpu {
+
+std::size_t bytes_needed(const World<float>& world) {
+  std::size_t bytes = 0, fields = 0;
+  for (const ParticleSet<float>& set : world.sets) {
+    const std::size_t columns = 3 + set.state.size() + (set.has_own_velocity() ? 3 : 0);
+    // Columns and ids twice, and two numbers of a sort.
+    bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + 2 * sizeof(std::uint32_t));
+  }
+  visit_nodes(world.grid, [&](const auto& field, const auto&) { fields += field.needed(world); });
+  constexpr std::size_t nodes = block_nodes * sizeof(Node<float>), cells = block_nodes * sizeof(std::uint32_t);
+  constexpr std::size_t tables = 512;  // of a block, about
+  bytes += world.particle_blocks.size() * (fields * arena_nodes * sizeof(NodeCounts) +
+                                           world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) +
+                                           sizeof(BlockSums) + tables);
+  // One more field is on its way in a sort; colliders have two of their own.
+  bytes += world.grid.blocks.size() * ((fields + 1 + (world.colliders.empty() ? 0 : 2)) * nodes + tables);
+  return bytes + bytes / 8;  // Buffers have room to grow
+}
+
+void check_room(const Device& device, const World<float>& world) {
+  const std::size_t needed = bytes_needed(world), there = device.memory().free + device.held();
+  if (needed <= there) return;
+  constexpr double mb = 1 << 20;
+  fail_run("{}: {} particles need about {:.1f} MB of its memory, and {:.1f} MB are free; fewer particles need less: "
+           "a larger space.spacing",
+           device.about(), world.particles(), static_cast<double>(needed) / mb, static_cast<double>(there) / mb);
+}
+
+}  // namespace dreampm::gpu
