@@ -33,7 +33,7 @@ const char* about(void*, const char** name, int* major, int* minor, std::size_t*
   return nullptr;
 }
 const char* memory(void* device, std::size_t* free, std::size_t* all) {
-  *free = std::size_t{1} << (opened(device).number == small ? 16 : 29), *all = std::size_t{1} << 30;
+  *free = std::size_t{1} << (opened(device).number == small ? 14 : 29), *all = std::size_t{1} << 30;
   return nullptr;
 }
 const char* allocate(void* device, std::size_t bytes, void** memory) {

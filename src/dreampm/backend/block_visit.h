@@ -80,6 +80,18 @@ struct NodeStep : NodeConstants<R> {
       : NodeConstants<R>(node_constants(w, dt, of_step)), world(w), fields(w, dt) {}
 };
 
+/// The numbers of stage `stage` of `stages` of RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it
+/// 2/(s^2 + s) of the step; a stage ends at (j^2 + j)/(s^2 + s) of it.
+struct RklFactors {
+  double kept, gain;  ///< of the change before, and of what the whole step would give
+  double part;        ///< of the step, that the stage adds
+  RklFactors(int stages, int stage)
+      : kept((stage - 1.0) / stage), gain((2.0 * stage - 1) / stage * unit(stages)), part(stage * unit(stages)) {}
+
+ private:
+  static double unit(double stages) { return 2 / (stages * (stages + 1)); }
+};
+
 /// One of the stages of a sub-cycled step: y_j = y_(j-1) + keep (y_(j-1) - y_(j-2)) + gain (f +
 /// L(y_(j-1))), f and L of the whole step. Differences are kept and not y_(j-2), so that rounding
 /// does not grow from stage to stage.
@@ -172,8 +184,7 @@ class BlockVisit {
         old[n] = node;
         Vec3<R> given = velocity(momenta[n]);
         if (stress) given += velocity(stress[n]);
-        set_velocity(change[n],
-                     velocity(change[n]) * stage.keep + given * (stage.gain / node.m) + stage.kick * stage.gain);
+        set_velocity(change[n], stage_change(velocity(change[n]), given, node.m, stage.keep, stage.gain, stage.kick));
         found_.sums.mass += static_cast<double>(node.m);
       });
     }
@@ -195,9 +206,9 @@ class BlockVisit {
       Node<R>* const change = in_block(stage.change[f]);
       for_matter(nodes, [&](Node<R>& node, int n) {
         const Vec3<R> before = velocity(old[n]), now = velocity(node);
-        Vec3<R> driven = stage.kick * node.m;
-        if (stress) driven += velocity(stress[n]);
-        found_.external_work += 0.5 * stage.part * static_cast<double>(dot(driven, before + now));
+        const Vec3<R> driven = stress ? velocity(stress[n]) : Vec3<R>{};
+        found_.external_work +=
+            0.5 * stage.part * static_cast<double>(driven_work2(stage.kick, driven, node.m, before, now));
         if (!(now == before + velocity(change[n]))) set_velocity(change[n], now - before);
       });
     }
@@ -334,8 +345,7 @@ class BlockVisit {
       const int n = std::countr_zero(left);
       if (!has_mass(nodes[n])) continue;
       for_boundary_layers(nodes[n], n, [&](int side, const BoundaryLayer<R>& layer) {
-        const Vec3<R> lost = layer.along * (stage.gain * std::min(layer.drag, step_.staged_drag)),
-                      before = velocity(nodes[n]);
+        const Vec3<R> lost = lost_in_stage(step_, layer, stage.gain), before = velocity(nodes[n]);
         set_velocity(change[n], velocity(change[n]) - lost);
         record_contact(walls[side], place_in_block(n), nodes[n], before, before - lost);
       });

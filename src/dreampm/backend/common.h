@@ -103,7 +103,8 @@ class GridUpdate {
   const std::vector<std::uint32_t>& surface_blocks() const;
   /// Contact of the first field with the surfaces of colliders, in a step of `dt`. The nodes of
   /// those blocks hold velocities; no others are looked at. Adds the impulses of colliders.
-  void meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found);
+  /// `bodies`: whether rigid bodies are unknowns, as in the visit of a step, not in a stage.
+  void meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies, GridStats& found);
 
  private:
   void begin_stages(const World<R>& world, const GridStats& found);

@@ -5,6 +5,7 @@
 #include "dreampm/backend/block_visit.h"
 #include "dreampm/backend/contact_gap.h"
 #include "dreampm/backend/flush_to_zero.h"
+#include "dreampm/backend/stage_sums.h"
 #include "dreampm/backend/surface_contact.h"
 #include "dreampm/base/parallel.h"
 #include "dreampm/base/thread_team.h"
@@ -48,11 +49,7 @@ struct GridUpdate<R>::Work {
   std::array<std::vector<Vec3<R>>, 2> field_impulses;  ///< kg m/s, by field and node
   // State of the viscous stages.
   std::array<Nodes<R>, 2> old, change;  ///< see RklStage
-  GridStats stage_stats;                ///< result of the last stage
-  GridStats stage_contact;  ///< impulses of contact in the last stage, with the part of earlier ones that it keeps
-  GridStats contact_sum;    ///< impulses of contact, summed over all stages
-  double kinetic_before = 0,
-         external_work = 0;  ///< J: kinetic energy before the stages, and work of gravity and stress in them
+  StageSums stages;
 
   /// Visits every block: first(visit of a block), contact, last(visit of a block). `measure`: true
   /// to measure the gaps anew.
@@ -167,7 +164,8 @@ const std::vector<std::uint32_t>& GridUpdate<R>::surface_blocks() const {
 }
 
 template <class R>
-void GridUpdate<R>::meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, GridStats& found) {
+void GridUpdate<R>::meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies,
+                                  GridStats& found) {
   Work& w = *work_;
   for (const std::uint32_t b : w.surface_blocks) {
     BlockStats& stats = w.block_stats[b];
@@ -175,7 +173,7 @@ void GridUpdate<R>::meet_surfaces(World<R>& world, const Obstacles& obstacles, d
     for (std::size_t n = b * std::size_t{block_nodes}; n < (b + std::size_t{1}) * block_nodes; ++n)
       stats.sums.mass += static_cast<double>(world.grid.nodes[n].m);
   }
-  w.surfaces.begin_bodies(world, dt);
+  if (bodies) w.surfaces.begin_bodies(world, dt);
   parallel_region([&](ThreadTeam& team) {
     const FlushToZero mode;
     w.surfaces(team, world, obstacles, 0, w.gaps, static_cast<R>(world.dx / dt), w.block_stats);
@@ -230,9 +228,7 @@ GridStats GridUpdate<R>::operator()(World<R>& world, const Obstacles& obstacles,
 template <class R>
 void GridUpdate<R>::begin_stages(const World<R>& world, const GridStats& found) {
   Work& w = *work_;
-  w.kinetic_before = found.kinetic, w.external_work = 0;
-  w.stage_contact = w.contact_sum = {};
-  w.stage_contact.colliders.resize(world.colliders.size()), w.contact_sum.colliders.resize(world.colliders.size());
+  w.stages.begin(world.colliders.size(), found);
   for (std::size_t f = 0; f < 2; ++f) {
     const std::size_t nodes = world.grid.field(f).size();
     w.old[f].resize(nodes), w.change[f].assign(nodes, {});
@@ -243,47 +239,32 @@ template <class R>
 void GridUpdate<R>::run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage,
                               const GridFields<R>& momenta) {
   Work& w = *work_;
-  // RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it 2/(s^2 + s) of the step; a
-  // stage ends at (j^2 + j)/(s^2 + s) of it.
-  const double stages = world.viscous_stages, unit = 2 / (stages * (stages + 1)), kept = (stage - 1.0) / stage;
-  const double gain = (2.0 * stage - 1) / stage * unit;
+  const RklFactors factors(world.viscous_stages, stage);
   // Later stages keep a part of a stage's change: the gains are the parts that add up to the whole
   // step.
-  const NodeStep<R> step(world, dt, gain);
-  const RklStage<R> now{static_cast<R>(kept),
-                        static_cast<R>(gain),
-                        stage * unit,
+  const NodeStep<R> step(world, dt, factors.gain);
+  const RklStage<R> now{static_cast<R>(factors.kept),
+                        static_cast<R>(factors.gain),
+                        factors.part,
                         static_cast<Vec3<R>>(world.gravity_over(dt) * dt),
                         momenta,
                         w.old,
                         w.change};
-  w.stage_stats = w.visit(
+  GridStats stats = w.visit(
       world, obstacles, step, false, [&](BlockVisit<R>& block) { block.rkl_stage(now); },
       [&](ThreadTeam& team, const auto& block) {
         team.loop(world.grid.blocks.size(), blocks_at_once, [&](std::size_t b) { block(b).store_increment(now); });
       });
-  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) w.external_work += w.block_stats[b].external_work;
-  // Impulses of contact in a stage are part of the change that later stages keep.
-  const auto add = [&](ImpulseSum& moved, ImpulseSum& all, const ImpulseSum& given) {
-    moved = {moved.impulse * kept + given.impulse, moved.angular * kept + given.angular,
-             moved.work * kept + given.work};
-    all += moved;
-  };
-  for (std::size_t side = 0; side < 6; ++side)
-    add(w.stage_contact.walls[side], w.contact_sum.walls[side], w.stage_stats.walls[side]);
-  for (std::size_t c = 0; c < w.stage_stats.colliders.size(); ++c)
-    add(w.stage_contact.colliders[c], w.contact_sum.colliders[c], w.stage_stats.colliders[c]);
+  double work = 0;
+  for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) work += w.block_stats[b].external_work;
+  w.stages.add(std::move(stats), work, factors.kept);
 }
 
 template <class R>
 double GridUpdate<R>::end_stages(const World<R>& world, GridStats& found) {
   Work& w = *work_;
   found.fields.work = w.field_work(world);
-  found.kinetic = w.stage_stats.kinetic;
-  found.finite = found.finite && w.stage_stats.finite;
-  for (std::size_t side = 0; side < 6; ++side) found.walls[side] += w.contact_sum.walls[side];
-  for (std::size_t c = 0; c < found.colliders.size(); ++c) found.colliders[c] += w.contact_sum.colliders[c];
-  return w.kinetic_before - w.stage_stats.kinetic + w.external_work + w.contact_sum.contact().work;
+  return w.stages.end(found);
 }
 
 template <class R>

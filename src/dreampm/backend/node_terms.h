@@ -114,6 +114,27 @@ DM_FN Vec3<R> after_layer(const NodeConstants<R>& step, const Vec3<R>& before, c
   return before - layer.along * (R(1) - R(1) / (R(1) + step.unstaged(layer.drag)));
 }
 
+/// The change of a node's velocity in one of the stages of a sub-cycled step (Meyer et al. 2014,
+/// RKL1). `change`: that of the stage before; `given`: the momentum that stress gives in the whole
+/// step, `kick` the velocity that gravity does.
+template <class R>
+DM_FN Vec3<R> stage_change(const Vec3<R>& change, const Vec3<R>& given, const R& mass, const R& keep, const R& gain,
+                           const Vec3<R>& kick) {
+  return change * keep + given * (gain / mass) + kick * gain;
+}
+/// The velocity that a boundary layer takes in a stage.
+template <class R>
+DM_FN Vec3<R> lost_in_stage(const NodeConstants<R>& step, const BoundaryLayer<R>& layer, const R& gain) {
+  return layer.along * (gain * min(layer.drag, step.staged_drag));
+}
+/// Twice the work that gravity and `stress` [kg m/s] do at a node that goes from one velocity to
+/// another, in a step [J].
+template <class R>
+DM_FN R driven_work2(const Vec3<R>& kick, const Vec3<R>& stress, const R& mass, const Vec3<R>& before,
+                     const Vec3<R>& now) {
+  return dot(kick * mass + stress, before + now);
+}
+
 /// True where the image of a node behind a wall mixes with the node that it mirrors: where both
 /// have mass and, at a wall that lets matter leave, where matter presses on it. `on`: velocity of
 /// the wall's node between.

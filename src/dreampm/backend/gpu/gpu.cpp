@@ -13,12 +13,14 @@
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/backend/gpu/viscous_stages.h"
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/parallel.h"
 
 namespace dreampm {
 namespace {
 
+using gpu::of_field;
 using gpu::targets;
 
 class Gpu final : public Backend<float> {
@@ -30,7 +32,8 @@ class Gpu final : public Backend<float> {
         memory_(*device_),
         passes_(*device_, memory_),
         sort_(*device_),
-        visit_(*device_) {}
+        visit_(*device_),
+        stages_(*device_) {}
   std::string_view name() const override { return name_; }
   std::string_view isa() const override { return isa_; }
 
@@ -85,11 +88,27 @@ class Gpu final : public Backend<float> {
   }
 
   double sub_cycle(World<float>& world, double dt, GridStats& found) override {
-    change_nodes_at_home(world);
     fit_grid(world, next_);
+    if (gpu::GridVisit::takes(world, obstacles_)) {
+      nodes_to_device(world);
+      home_ = without(home_, MatterFields::nodes);
+      return stages_(world, memory_, visit_, passes_, obstacles_, update_, next_, dt, found);
+    }
+    change_nodes_at_home(world);
+    const auto lend_velocities = [&] {
+      for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(gpu::nodes, f)].upload(world.grid.field(f));
+    };
     return update_.sub_cycle(
-        world, obstacles_, dt, found, next_, [&] { passes_.find_viscous_forces(world, dt, next_); },
-        [&] { return passes_.fastest_particle(world); });
+        world, obstacles_, dt, found, next_,
+        [&] {
+          lend_velocities();
+          passes_.find_viscous_forces(world, dt, next_);
+          for (std::size_t f = 0; f < 2; ++f) memory_.momenta[f].download(next_.field(f));
+        },
+        [&] {
+          lend_velocities();
+          return passes_.fastest_particle(world);
+        });
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
@@ -254,6 +273,7 @@ class Gpu final : public Backend<float> {
   gpu::ParticlePasses passes_;
   gpu::ParticleSort sort_;
   gpu::GridVisit visit_;
+  gpu::ViscousStages stages_;
   std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
   GridFields<float> next_;                     ///< its block list stays empty
   bool based_ = false;                         ///< whether Memory::base is current

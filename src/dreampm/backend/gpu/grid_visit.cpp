@@ -38,6 +38,7 @@ GridVisit::GridVisit(Device& device)
       folded_(device),
       sums_(device),
       given_(device),
+      dragged_(device),
       damped_(device),
       block_ranges_(device),
       wall_ranges_(device),
@@ -58,7 +59,7 @@ GridVisit::GridVisit(Device& device)
 
 bool GridVisit::takes(const World<float>& world, const Obstacles& obstacles) {
   const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
-  return world.fields.empty() && world.viscous_stages == 0 && !world.needs_solid_field() && !(solid && obstacles.any());
+  return world.fields.empty() && !world.needs_solid_field() && !(solid && obstacles.any());
 }
 
 void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
@@ -172,6 +173,8 @@ void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacl
   blocks_.upload(blocks), waiting_.upload(waiting), entries_.upload(entries), layers_.upload(layers);
   folded_.resize(layers.size() * 2 * plane_nodes);
   sums_.resize(blocks.size()), given_.resize(count);
+  // Entries of layers stay as they are.
+  dragged_.upload(std::vector<SourceTerms>(world.has_skin_friction() ? count : 0, SourceTerms::none()));
 }
 
 GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obstacles& obstacles,
@@ -179,25 +182,31 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
   GridStats total;
   total.colliders.resize(world.colliders.size());
   if (gapped_[0] || gapped_[1]) measure_gaps(world, memory);
-  const VisitInput in = input(world, memory, dt);
+  const VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
   launch(BeginVisit{in}, blocks_.size());
-  meet_surfaces(world, memory, obstacles, host, dt, total);
+  contact(in, world, memory, obstacles, host, dt, true, total);
+  add_results(in, false, total);
+  return total;
+}
+
+void GridVisit::contact(const VisitInput& in, World<float>& world, Memory& memory, const Obstacles& obstacles,
+                        GridUpdate<float>& host, double dt, bool bodies, GridStats& found) {
+  meet_surfaces(world, memory, obstacles, host, dt, bodies, found);
+  const auto folded = [&](int axis) {
+    return folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes;
+  };
   for (int axis = 2; folds_ && axis >= 0; --axis)
-    launch(FoldImages{in, layers(axis), folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes},
-           blocks_of(layers(axis)));
+    launch(FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
   launch(
       MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
       deep_blocks_.size());
   launch(FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
-    launch(ReflectImages{in, layers(axis), folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes},
-           blocks_of(layers(axis)));
-  add_results(in.damped != nullptr, total);
-  return total;
+    launch(ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
 }
 
 void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                              double dt, GridStats& found) {
+                              double dt, bool bodies, GridStats& found) {
   const std::vector<std::uint32_t>& blocks = host.surface_blocks();
   if (blocks.empty()) return;
   surface_blocks_.upload(blocks);
@@ -210,7 +219,7 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
       one(world.grid.nodes.data() + std::size_t{blocks[i]} * block_nodes, copies_home_.data() + i * block_nodes);
   };
   copy([](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
-  host.meet_surfaces(world, obstacles, dt, found);
+  host.meet_surfaces(world, obstacles, dt, bodies, found);
   copy([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
   copies_.upload(copies_home_);
   launch(CopyBlocks{surface_blocks_.data(), grid, copies_.data(), true}, blocks.size());
@@ -236,9 +245,9 @@ void GridVisit::measure_gaps(const World<float>& world, Memory& memory) {
          (planes_.size() + FindWallGaps::at_once - 1) / FindWallGaps::at_once);
 }
 
-VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt) {
+VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt, double part) {
   VisitInput in{};
-  in.step = node_constants(world, dt, 1);
+  in.step = node_constants(world, dt, part);
   in.grid = memory.grid_pointers();
   double lightest = 1e30;
   for (const ParticleSet<float>& set : world.sets) lightest = std::min(lightest, set.mass);
@@ -260,17 +269,18 @@ LayersInput GridVisit::layers(int axis) const {
   return {layers_.data() + begin, static_cast<std::int32_t>(end - begin)};
 }
 
-void GridVisit::add_results(bool damped, GridStats& total) {
+void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total) {
   // All sums come home at once.
   const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size(), deep = deep_given_.size(),
-                    damping = damped ? blocks : 0;
+                    damping = in.damped ? blocks : 0, drag = dragged ? walls : 0;
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));
-  parts_.resize((blocks + walls + damping) * sizeof(GridTerms));
+  parts_.resize((blocks + walls + drag + damping) * sizeof(GridTerms));
   auto* const grid = reinterpret_cast<GridTerms*>(parts_.data());
   auto* const given = reinterpret_cast<SourceTerms*>(grid + blocks);
   launch(AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
   launch(AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
-  launch(AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls}, damping);
+  launch(AddUp<SourceTerms>{dragged_.data(), wall_ranges_.data(), given + walls}, drag);
+  launch(AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls + drag}, damping);
   home_.resize(parts_.size());
   parts_.download(home_);
   const auto part = [&]<class T>(std::size_t i, T) {
@@ -287,12 +297,12 @@ void GridVisit::add_results(bool damped, GridStats& total) {
   total.kinetic = 0.5 * sum.kinetic2;
   total.arrived = 0.5 * sum.arrived2;
   total.finite = sum.finite;
-  for (std::size_t i = 0; i < walls; ++i) {
+  for (std::size_t i = 0; i < walls + drag; ++i) {
     const SourceTerms one = part(blocks + i, SourceTerms{});
-    total.walls[static_cast<std::size_t>(side_of_range_[i])] += one.sum();
+    total.walls[static_cast<std::size_t>(side_of_range_[i % walls])] += one.sum();
     total.kinetic += one.gained;
   }
-  for (std::size_t i = 0; i < damping; ++i) total.damping += part(blocks + walls + i, SourceTerms{}).sum();
+  for (std::size_t i = 0; i < damping; ++i) total.damping += part(blocks + walls + drag + i, SourceTerms{}).sum();
   if (deep == 0) return;
   deep_home_.resize(deep, SourceTerms::none());
   deep_given_.download(deep_home_);

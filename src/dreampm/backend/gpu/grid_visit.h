@@ -14,8 +14,8 @@ namespace dreampm::gpu {
 class GridVisit {
  public:
   explicit GridVisit(Device& device);
-  /// True if a device can visit the nodes of this world: the host does where force fields, a second
-  /// field or stages of viscosity act on them, or solids or grains meet colliders.
+  /// True if a device can visit the nodes of this world: the host does where force fields or a
+  /// second field act on them, or solids or grains meet colliders.
   static bool takes(const World<float>& world, const Obstacles& obstacles);
 
   /// Must be called after every change of the grid's block list or of the particles' order.
@@ -29,15 +29,27 @@ class GridVisit {
   /// As MirrorWalls::add_image_mass.
   void add_image_mass(const World<float>& world, Memory& memory, double dt);
 
+  // Parts of a visit, for the stages of viscosity.
+
+  /// `part`: as node_constants.
+  VisitInput input(const World<float>& world, Memory& memory, double dt, double part);
+  /// All between the first kernel of a visit and its sums. `bodies`: as GridUpdate::meet_surfaces.
+  void contact(const VisitInput& in, World<float>& world, Memory& memory, const Obstacles& obstacles,
+               GridUpdate<float>& host, double dt, bool bodies, GridStats& found);
+  /// Adds the sums; `dragged`: those of boundary layers too.
+  void add_results(const VisitInput& in, bool dragged, GridStats& total);
+  /// As VisitInput::given, of boundary layers in a stage.
+  SourceTerms* dragged() { return dragged_.data(); }
+  /// Ranges of the blocks of the grid, for sums.
+  const Buffer<Range>& block_ranges() const { return block_ranges_; }
+
  private:
   void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
   void find_gaps(const World<float>& world, const ContactGaps& gaps);
   void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                     double dt, GridStats& found);
+                     double dt, bool bodies, GridStats& found);
   void measure_gaps(const World<float>& world, Memory& memory);
-  VisitInput input(const World<float>& world, Memory& memory, double dt);
   LayersInput layers(int axis) const;
-  void add_results(bool damped, GridStats& total);
   template <class K>
   void launch(const K& kernel, std::size_t blocks) {
     dreampm::gpu::launch(*device_, kernel, blocks);
@@ -53,7 +65,7 @@ class GridVisit {
   Buffer<std::uint8_t> folded_;
   // Sums, the ranges of them that are added up, and what comes of these.
   Buffer<GridTerms> sums_;
-  Buffer<SourceTerms> given_, damped_;
+  Buffer<SourceTerms> given_, dragged_, damped_;
   Buffer<Range> block_ranges_, wall_ranges_;
   std::vector<int> side_of_range_;
   Buffer<std::byte> parts_;

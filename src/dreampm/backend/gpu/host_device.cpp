@@ -40,7 +40,8 @@ class HostDevice final : public Device {
   std::string about() const override { return "this machine, thread after thread"; }
   std::string isa() const override { return "host"; }
   Memory memory() const override {
-    return {std::numeric_limits<std::size_t>::max(), std::numeric_limits<std::size_t>::max()};
+    constexpr std::size_t much = std::numeric_limits<std::size_t>::max() / 2;
+    return {much, much};
   }
   void* allocate(std::size_t bytes) override {
     void* const memory = std::malloc(bytes);

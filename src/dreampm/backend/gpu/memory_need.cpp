@@ -16,9 +16,9 @@ std::size_t bytes_needed(const World<float>& world) {
   visit_nodes(world.grid, [&](const auto& field, const auto&) { fields += field.needed(world); });
   constexpr std::size_t nodes = block_nodes * sizeof(Node<float>), cells = block_nodes * sizeof(std::uint32_t);
   constexpr std::size_t tables = 512;  // of a block, about
-  bytes += world.particle_blocks.size() * (fields * arena_nodes * sizeof(NodeCounts) +
-                                           world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) +
-                                           sizeof(BlockSums) + tables);
+  bytes += world.particle_blocks.size() *
+           (fields * arena_nodes * sizeof(NodeCounts) +
+            world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) + sizeof(BlockSums) + tables);
   // One more field is on its way in a sort; colliders have two of their own.
   bytes += world.grid.blocks.size() * ((fields + 1 + (world.colliders.empty() ? 0 : 2)) * nodes + tables);
   return bytes + bytes / 8;  // Buffers have room to grow
@@ -28,9 +28,10 @@ void check_room(const Device& device, const World<float>& world) {
   const std::size_t needed = bytes_needed(world), there = device.memory().free + device.held();
   if (needed <= there) return;
   constexpr double mb = 1 << 20;
-  fail_run("{}: {} particles need about {:.1f} MB of its memory, and {:.1f} MB are free; fewer particles need less: "
-           "a larger space.spacing",
-           device.about(), world.particles(), static_cast<double>(needed) / mb, static_cast<double>(there) / mb);
+  fail_run(
+      "{}: {} particles need about {:.1f} MB of its memory, and {:.1f} MB are free; fewer particles need less: "
+      "a larger space.spacing",
+      device.about(), world.particles(), static_cast<double>(needed) / mb, static_cast<double>(there) / mb);
 }
 
 }  // namespace dreampm::gpu

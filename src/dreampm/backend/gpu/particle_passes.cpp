@@ -46,8 +46,10 @@ PassStats ParticlePasses::g2p2g(World<float>& world, double dt, double dt_next, 
     }
     bounds = largest(bounds, widened(found));
   }
-  for (std::size_t t = 0; t < targets; ++t) sum_arenas(t, bounds, next);
-  for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].swap(world.sets[s].transfer.keeps_velocity());
+  for (std::size_t t = 0; t < targets; ++t) sum_arenas(t, bounds, next, memory_.nodes[t]);
+  // Without a block nothing was passed over, and nothing was written.
+  for (std::size_t s = 0; blocks_ > 0 && s < world.sets.size(); ++s)
+    memory_.sets[s].swap(world.sets[s].transfer.keeps_velocity());
   return total;
 }
 
@@ -145,14 +147,13 @@ void ParticlePasses::launch_pass(const PassStep& pass, std::size_t s, const Scat
 }
 
 /// Brings what the arenas of a target hold to the nodes.
-void ParticlePasses::sum_arenas(std::size_t target, const ScatterBounds& bounds, GridFields<float>& next) {
+void ParticlePasses::sum_arenas(std::size_t target, const ScatterBounds& bounds, GridFields<float>& next,
+                                Buffer<Node<float>>& to) {
   const std::size_t size = host_field(next, target).size();
-  Buffer<Node<float>>& nodes = memory_.nodes[target];
-  nodes.resize(size);
-  const bool based = target == mixture_share;
+  to.resize(size);
   launch(SumArenas{written_[target] ? memory_.arenas[target].data() : nullptr, memory_.sources.first.data(),
                    memory_.sources.arena.data(), memory_.sources.corner.data(), memory_.loads.data(),
-                   based ? memory_.base.data() : nullptr, nodes.data(), bounds, unit_field(target)},
+                   target == mixture_share ? memory_.base.data() : nullptr, to.data(), bounds, unit_field(target)},
          size / block_nodes);
 }
 
@@ -161,26 +162,22 @@ void ParticlePasses::download_motion(const World<float>& world, Motion<float>& m
   for (std::size_t s = 0; s < world.sets.size(); ++s) memory_.sets[s].download_motion(motion.sets[s]);
 }
 
-void ParticlePasses::find_viscous_forces(World<float>& world, double dt, GridFields<float>& momenta) {
-  for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(nodes, f)].upload(world.grid.field(f));
+void ParticlePasses::find_viscous_forces(World<float>& world, double dt, GridFields<float>& next) {
   // World::node_speed is that of the step before, and no state. The mass of nodes is not known
   // where matter came in since the last pass: what the blocks hold bounds it.
   ScatterBounds bounds = assumed_bounds(world, 0);
   bounds.mass = 1e20f;
   for (;;) {
     written_ = {};
-    const float speed = launch_viscous(world, dt, bounds, momenta);
+    const float speed = launch_viscous(world, dt, bounds, next);
     if (!(speed > bounds.speed)) break;
     bounds = largest(bounds, widened({speed, 0, 0, 0}));
   }
-  for (std::size_t f = 0; f < 2; ++f) {
-    sum_arenas(of_field(nodes, f), bounds, momenta);
-    memory_.nodes[of_field(nodes, f)].download(momenta.field(f));
-  }
+  for (std::size_t f = 0; f < 2; ++f) sum_arenas(of_field(nodes, f), bounds, next, memory_.momenta[f]);
 }
 /// Returns the largest speed that was scattered [m/s].
 float ParticlePasses::launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds,
-                                     GridFields<float>& momenta) {
+                                     GridFields<float>& next) {
   memory_.block_speeds.resize(blocks_);
   speeds_.resize(blocks_);
   float fastest = 0;
@@ -189,7 +186,7 @@ float ParticlePasses::launch_viscous(World<float>& world, double dt, const Scatt
     Materials::with(set.material, [&]<class M>() {
       if constexpr (Viscous<M>) {
         const std::size_t field = world.field_of(set);
-        const ArenaOutput out = arena(of_field(nodes, field), momenta);
+        const ArenaOutput out = arena(of_field(nodes, field), next);
         launch(ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
                               input_of(world, s, false), out, memory_.block_speeds.data(), static_cast<int>(field)},
                blocks_);
@@ -201,7 +198,6 @@ float ParticlePasses::launch_viscous(World<float>& world, double dt, const Scatt
   return fastest;
 }
 double ParticlePasses::fastest_particle(World<float>& world) {
-  for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(nodes, f)].upload(world.grid.field(f));
   memory_.block_speeds.resize(blocks_);
   for (std::size_t s = 0; s < world.sets.size(); ++s)
     launch(SpeedPass{input_of(world, s, false), memory_.block_speeds.data(), s == 0}, blocks_);

@@ -20,10 +20,10 @@ class ParticlePasses {
   /// `next` has in size. `looks`: whether motion is kept, for download_motion. `thin`: whether
   /// distances from thin colliders are in memory.
   PassStats g2p2g(World<float>& world, double dt, double dt_next, bool looks, bool thin, GridFields<float>& next);
-  /// Fills the fields of `momenta` as GridUpdate::sub_cycle asks for it, from velocities in the
-  /// World.
-  void find_viscous_forces(World<float>& world, double dt, GridFields<float>& momenta);
-  /// m/s: the largest speed that a particle gathers of velocities in the World.
+  /// Fills Memory::momenta as GridUpdate::sub_cycle asks for it, from the velocities of nodes.
+  /// `next`: as above.
+  void find_viscous_forces(World<float>& world, double dt, GridFields<float>& next);
+  /// m/s: the largest speed that a particle gathers.
   double fastest_particle(World<float>& world);
   /// What the last pass looked at.
   void download_motion(const World<float>& world, Motion<float>& motion) const;
@@ -40,8 +40,8 @@ class ParticlePasses {
   ArenaOutput arena(std::size_t target, GridFields<float>& next);
   ScatterBounds pass(const PassStep& step, const ScatterBounds& bounds, PassStats& total);
   void launch_pass(const PassStep& step, std::size_t set, const ScatterBounds& bounds);
-  void sum_arenas(std::size_t target, const ScatterBounds& bounds, GridFields<float>& next);
-  float launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds, GridFields<float>& momenta);
+  void sum_arenas(std::size_t target, const ScatterBounds& bounds, GridFields<float>& next, Buffer<Node<float>>& to);
+  float launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds, GridFields<float>& next);
   template <class K>
   void launch(const K& kernel, std::size_t blocks) {
     gpu::launch(*device_, kernel, blocks);

@@ -234,6 +234,7 @@ class Memory {
         block_ranges(device),
         block_speeds(device),
         device_(&device) {
+    for (int f = 0; f < 2; ++f) momenta.emplace_back(device);
     for (std::size_t t = 0; t < targets; ++t) nodes.emplace_back(device), arenas.emplace_back(device);
   }
   std::vector<SetMemory> sets;
@@ -243,8 +244,9 @@ class Memory {
   Buffer<std::uint32_t> beside, apart;  ///< blocks of particles that colliders are near, and others
   Buffer<BlockLoad> loads;
   Buffer<Node<float>> clearance, base;
-  std::vector<Buffer<Node<float>>> nodes;  ///< by Target
-  std::vector<Buffer<NodeCounts>> arenas;  ///< by Target
+  std::vector<Buffer<Node<float>>> nodes;    ///< by Target
+  std::vector<Buffer<NodeCounts>> arenas;    ///< by Target
+  std::vector<Buffer<Node<float>>> momenta;  ///< that viscous stress gives, by field
   Buffer<BlockSums> block_sums, totals;
   Buffer<Range> block_ranges;  ///< of block_sums, that are added up
   Buffer<float> block_speeds;

@@ -1,0 +1,51 @@
+#include "dreampm/backend/gpu/viscous_stages.h"
+
+#include "dreampm/backend/block_visit.h"
+
+namespace dreampm::gpu {
+
+double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
+                                 const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next,
+                                 double dt, GridStats& found) {
+  sums_.begin(world.colliders.size(), found);
+  const std::size_t blocks = world.grid.blocks.size();
+  old_.resize(blocks * block_nodes), change_.resize(blocks * block_nodes), driven_.resize(blocks);
+  for (int number = 1; number <= world.viscous_stages; ++number) {
+    passes.find_viscous_forces(world, dt, next);
+    const RklFactors factors(world.viscous_stages, number);
+    const VisitInput in = visit.input(world, memory, dt, factors.gain);
+    const StageInput stage{static_cast<float>(factors.kept),
+                           static_cast<float>(factors.gain),
+                           factors.part,
+                           static_cast<Vec3<float>>(world.gravity_over(dt) * dt),
+                           number == 1,
+                           memory.momenta[0].data(),
+                           memory.nodes[stress_nodes].data(),
+                           old_.data(),
+                           change_.data(),
+                           in.step.skin ? visit.dragged() : nullptr,
+                           driven_.data()};
+    launch(BeginStage{in, stage}, blocks);
+    GridStats stats;
+    stats.colliders.resize(world.colliders.size());
+    visit.contact(in, world, memory, obstacles, host, dt, false, stats);
+    launch(EndStage{in, stage}, blocks);
+    visit.add_results(in, in.step.skin, stats);
+    sums_.add(std::move(stats), driven_work(visit), factors.kept);
+  }
+  found.max_speed = passes.fastest_particle(world);
+  return sums_.end(found);
+}
+
+double ViscousStages::driven_work(const GridVisit& visit) {
+  const Buffer<Range>& ranges = visit.block_ranges();
+  driven_parts_.resize(ranges.size());
+  launch(AddUp<SourceTerms>{driven_.data(), ranges.data(), driven_parts_.data()}, ranges.size());
+  parts_.resize(ranges.size());
+  driven_parts_.download(parts_);
+  double work = 0;
+  for (const SourceTerms& part : parts_) work += part.work;
+  return work;
+}
+
+}  // namespace dreampm::gpu

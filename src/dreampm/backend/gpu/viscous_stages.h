@@ -1,0 +1,32 @@
+// The stages of viscosity of a World in a device's memory, in place of GridUpdate::sub_cycle.
+#pragma once
+#include "dreampm/backend/gpu/grid_visit.h"
+#include "dreampm/backend/gpu/particle_passes.h"
+#include "dreampm/backend/stage_sums.h"
+
+namespace dreampm::gpu {
+
+class ViscousStages {
+ public:
+  explicit ViscousStages(Device& device)
+      : device_(&device), old_(device), change_(device), driven_(device), driven_parts_(device) {}
+  /// As Backend::sub_cycle. `next`: a grid as long as the World's.
+  double operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
+                    const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next, double dt,
+                    GridStats& found);
+
+ private:
+  double driven_work(const GridVisit& visit);
+  template <class K>
+  void launch(const K& kernel, std::size_t blocks) {
+    gpu::launch(*device_, kernel, blocks);
+  }
+
+  Device* device_;
+  Buffer<Node<float>> old_, change_;
+  Buffer<SourceTerms> driven_, driven_parts_;
+  std::vector<SourceTerms> parts_;
+  StageSums sums_;
+};
+
+}  // namespace dreampm::gpu
