@@ -15,6 +15,7 @@ enum class Level { quick, full };
 
 struct Options {
   Level level = Level::quick;
+  std::string backend{};  ///< of all runs in float; empty: cpu
   // Options of the case stability:
   int draws = 0;  ///< how many; 0: those of the level
   std::uint64_t seed = 1;
