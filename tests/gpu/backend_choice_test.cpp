@@ -111,6 +111,14 @@ TEST_F(BackendChoice, WithoutAWordItGoesOnByTheSameOneToTheBit) {
   EXPECT_THAT(t.err, Not(HasSubstr("to rounding")));
   EXPECT_EQ(hashes("parts"), hashes("whole"));
   EXPECT_FALSE(record("parts").contains("earlier_backends"));
+  const Typed with_isa = with_card("run dam.yaml --out other --backend cuda --isa sse4");
+  EXPECT_EQ(with_isa.code, 2);
+  EXPECT_THAT(with_isa.err, HasSubstr("sse4 is one of the backend cpu"));
+  EXPECT_FALSE(fs::exists(folder / "other"));
+  // Nor by another instruction set.
+  ASSERT_EQ(without("run dam.yaml --out sets --frames 3 --isa sse4").code, 0);
+  ASSERT_EQ(without("run dam.yaml --out sets --frames 4 --resume").code, 0);
+  EXPECT_EQ(record("sets").at("machine").at("isa"), "sse4");
   const Typed in_double = with_card("run dam.yaml --out parts --resume --backend reference");
   EXPECT_EQ(in_double.code, 2);
   EXPECT_THAT(in_double.err, AllOf(HasSubstr("checkpoint_000009.h5: is in float"), HasSubstr("--backend cuda")));

@@ -86,12 +86,13 @@ class PlayByCardTyped : public dreampm::test::Typing {};
 
 TEST_F(PlayByCardTyped, TheCommandTakesIt) {
   write("tank.yaml", dreampm::test::tiny_dam);
-  write("s.txt", "frames 3\nsave later.yaml\n");
+  write("s.txt", "frames 3\nsave later.yaml\nrender film.yaml 0.05\n");
   const std::string here = "export DREAMPM_CUDA='" STAND_IN "'", nowhere = "export DREAMPM_CUDA=/nowhere.so";
   const auto one =
       type("play tank.yaml --headless --backend cuda --script s.txt --frames 0 --screenshot one.png", here);
   ASSERT_EQ(one.code, 0) << one.err;
   EXPECT_TRUE(std::filesystem::exists(folder / "one.png"));
+  EXPECT_EQ(nlohmann::json::parse(read_file(folder / "out/film/run.json")).at("backend"), "cuda");
   // The saved moment goes on by either.
   EXPECT_EQ(type("run later.yaml --out a --backend cuda --set time.frames=4", here).code, 0);
   EXPECT_EQ(type("run later.yaml --out b --set time.frames=4", nowhere).code, 0);

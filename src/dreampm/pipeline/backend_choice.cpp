@@ -28,18 +28,29 @@ std::optional<BackendChoice> earlier_choice(const fs::path& folder) {
   return std::nullopt;
 }
 
-AnyBackend make_chosen(const BackendChoice& asked, const std::optional<BackendChoice>& earlier) {
-  if (!earlier || (!asked.backend.empty() && asked.backend != earlier->backend))
-    return make_backend(asked.backend, asked.isa);
+namespace {
+
+AnyBackend make_as_before(const BackendChoice& asked, const BackendChoice& earlier) {
   try {
-    return make_backend(earlier->backend, asked.isa == "auto" ? earlier->isa : asked.isa);
+    return make_backend(earlier.backend, asked.isa == "auto" ? earlier.isa : asked.isa);
   } catch (const InputError& e) {
     if (asked.isa != "auto") throw;
     fail_input(
-        "{}; what is there was computed by {}: dreampm run --resume goes on with another --backend or --isa, "
-        "the same to rounding",
-        e.what(), earlier->text());
+        "{}; what is there was computed by {}: dreampm run --resume goes on with another --backend or --isa, the same "
+        "to rounding",
+        e.what(), earlier.text());
   }
+}
+
+}  // namespace
+
+AnyBackend make_chosen(const BackendChoice& asked, const std::optional<BackendChoice>& earlier) {
+  const bool goes_on = earlier && (asked.backend.empty() || asked.backend == earlier->backend);
+  AnyBackend made = goes_on ? make_as_before(asked, *earlier) : make_backend(asked.backend, asked.isa);
+  const BackendChoice now = std::visit([](const auto& backend) { return choice_of(*backend); }, made);
+  if (asked.isa != "auto" && asked.isa != now.isa)
+    fail_input("the instruction set {} is one of the backend cpu: leave it out with {}", asked.isa, now.backend);
+  return made;
 }
 
 }  // namespace dreampm
