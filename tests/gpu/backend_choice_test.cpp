@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "dreampm/backend/cpu/cpu.h"
 #include "dreampm/io/ledger.h"
 #include "dreampm/io/ply.h"
 #include "dreampm/simulation.h"
@@ -119,6 +120,14 @@ TEST_F(BackendChoice, WithoutAWordItGoesOnByTheSameOneToTheBit) {
   ASSERT_EQ(without("run dam.yaml --out sets --frames 3 --isa sse4").code, 0);
   ASSERT_EQ(without("run dam.yaml --out sets --frames 4 --resume").code, 0);
   EXPECT_EQ(record("sets").at("machine").at("isa"), "sse4");
+  for (const std::string_view set : cpu_instruction_sets())
+    if (set != "sse4") {
+      const Typed other = without("run dam.yaml --out sets --frames 5 --resume --isa " + std::string(set));
+      EXPECT_EQ(other.code, 0) << other.err;
+      EXPECT_THAT(other.err, HasSubstr("goes on with what cpu (sse4) computed: the same to rounding"));
+      EXPECT_EQ(record("sets").at("earlier_backends")[0].dump(), R"({"backend":"cpu","isa":"sse4","last_frame":4})");
+      break;
+    }
   const Typed in_double = with_card("run dam.yaml --out parts --resume --backend reference");
   EXPECT_EQ(in_double.code, 2);
   EXPECT_THAT(in_double.err, AllOf(HasSubstr("checkpoint_000009.h5: is in float"), HasSubstr("--backend cuda")));
