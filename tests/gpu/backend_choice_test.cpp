@@ -167,7 +167,9 @@ TEST_F(BackendChoice, FarmsWedgesAndCasesTakeIt) {
   EXPECT_THAT(read_file(folder / "jobs/Makefile"), HasSubstr("--backend cuda"));
   const Typed t = with_card("validate free-fall --backend cuda --json");
   EXPECT_EQ(t.code, 0) << t.err;
-  EXPECT_EQ(nlohmann::json::parse(t.out).at("cases")[0].at("backend"), "cuda");
+  const nlohmann::json fall = nlohmann::json::parse(t.out).at("cases")[0];
+  EXPECT_EQ(fall.at("backend"), "cuda");
+  EXPECT_EQ(fall.at("metrics")[1].at("name"), "cuda (float): farthest from it");
   EXPECT_THAT(without("validate free-fall --backend cuda").err, HasSubstr("no CUDA"));
   EXPECT_THAT(without("validate free-fall --backend reference").err, HasSubstr("computes in double"));
 }
