@@ -223,7 +223,8 @@ def bake(context):
     program = preferences.find_command()
     captured, folder, materials = write(context)
     scene_file, out = os.path.join(folder, SCENE), os.path.join(folder, RUN)
-    session.begin(Bake(context.scene, job.bake_calls(program, scene_file, out, context.scene.dreampm.threads),
+    settings = context.scene.dreampm
+    session.begin(Bake(context.scene, job.bake_calls(program, scene_file, out, settings.threads, settings.backend),
                        Baked(captured, materials), captured.warnings))
 
 
@@ -233,7 +234,9 @@ def resume(context):
     run, baked = run_of(scene), Baked.of(scene)
     if not run.can_resume() or not baked:
         raise DreampmError("there is nothing to go on from: bake first")
-    calls = job.resume_calls(preferences.find_command(), run.path, baked.frames_to(scene), scene.dreampm.threads)
+    settings = scene.dreampm
+    calls = job.resume_calls(preferences.find_command(), run.path, baked.frames_to(scene), settings.threads,
+                             settings.backend)
     session.begin(Bake(scene, calls, baked, fresh=False))
 
 

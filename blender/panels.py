@@ -157,7 +157,7 @@ class DREAMPM_PT_output(Sidebar, bpy.types.Panel):
         layout, s = self.layout, context.scene.dreampm
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("voxel", "smooth", "threads", "folder"):
+        for name in ("voxel", "smooth", "backend", "threads", "folder"):
             layout.prop(s, name)
         layout.operator("dreampm.load", icon="FILE_FOLDER")
 

@@ -154,6 +154,9 @@ class DreampmScene(bpy.types.PropertyGroup):
                          description="Of the surface, in cells of two spacings. Smaller is finer and slower")
     smooth: IntProperty(name="Smoothing", min=0, max=10, default=2, description="Rounds of smoothing of the surface")
     threads: IntProperty(name="Threads", min=0, max=4096, default=0, description="The most threads to use; 0: all cores")
+    backend: EnumProperty(name="Simulate On", default="cpu", items=[
+        ("cpu", "CPU", "All cores, or as many as Threads says"),
+        ("cuda", "NVIDIA GPU", "One card with compute capability 8.0 or newer; `dreampm info --device` names it")])
     folder: StringProperty(name="Folder", **PATH, default="//dreampm",
                            description="Where the scene and its frames are written; // is beside the .blend file")
     baked: StringProperty(description="What the frames in the folder are of", options={"HIDDEN"})

@@ -33,6 +33,7 @@ void FarmArguments::add_to(CLI::App& verb, bool required) {
                            ->capture_default_str()
                            ->transform(whole_number(1, 1000000));
   if (!required) chunk->needs(to);
+  add_backend(verb, options.backend, "cpu");
   add_isa(verb, options.isa);
   add_threads(verb, options.threads);
 }

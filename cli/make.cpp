@@ -18,7 +18,7 @@ constexpr Part parts[] = {
 
 struct MakeArguments {
   SceneArguments scene;
-  std::string out, isa = "auto", only, range;
+  std::string out, backend, isa = "auto", only, range;
   int threads = 0;
 };
 
@@ -37,7 +37,7 @@ int make_all(const MakeArguments& a) {
   model::Scene scene = a.scene.load();
   if (!a.out.empty()) scene.output.folder = a.out;
   const std::filesystem::path folder = scene.output.folder;
-  if (!make_asked(a, scene, {.folder = folder, .threads = a.threads, .isa = a.isa}))
+  if (!make_asked(a, scene, {.folder = folder, .threads = a.threads, .backend = a.backend, .isa = a.isa}))
     info("nothing to do: {}{} is up to date", a.range.empty() ? "" : fmt::format("frames {} of ", a.range),
          folder.string());
   if (!a.only.empty() && a.only != "film") return 0;
@@ -60,6 +60,7 @@ void add_make(CLI::App& app, Action& action) {
       ->check(CLI::IsMember(names));
   verb->add_option("--frames", a->range,
                    "with --only frames: frames A-B, or A:B, both included; others may be made at the same time");
+  add_backend(*verb, a->backend, "the one that made the run which is there, else cpu");
   add_isa(*verb, a->isa);
   add_threads(*verb, a->threads);
   verb->callback([a, &action] { action = [a] { return make_all(*a); }; });

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/file.h"
 #include "dreampm/gl/bench.h"
 #include "dreampm/play/model/bench_play.h"
@@ -14,7 +15,7 @@ namespace dreampm::cli {
 namespace {
 
 struct PlayArguments {
-  std::string what = "dam-break", record, script, screenshots, size, particles;
+  std::string what = "dam-break", record, script, screenshots, size, particles, backend;
   int preset = 1, frames = 60, every = 1, threads = 0;
   std::optional<std::uint64_t> random_actions;
   std::optional<float> ui_scale;
@@ -52,6 +53,10 @@ int play(const PlayArguments& args) {
   }
   dreampm::play::PlayOptions options;
   options.simulation.threads = args.threads;
+  if (!args.backend.empty()) {
+    make_backend(args.backend);  // refused before a window opens
+    options.simulation.backend = args.backend;
+  }
   options.program = std::filesystem::read_symlink("/proc/self/exe");
   int width = 1280, height = 720;
   if (!args.size.empty()) read_size(args.size, width, height);
@@ -117,6 +122,7 @@ void add_play(CLI::App& app, Action& action) {
                    "seed of random actions after the script, to look for what breaks; with --headless")
       ->needs(headless)
       ->transform(whole_number(0));
+  add_backend(*verb, args->backend, "cpu");
   add_threads(*verb, args->threads);
   verb->callback([&action, args] { action = [args] { return play(*args); }; });
 }

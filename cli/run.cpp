@@ -5,7 +5,7 @@ namespace {
 
 struct RunArguments {
   SceneArguments scene;
-  std::string out, backend = "cpu", isa = "auto";
+  std::string out, backend, isa = "auto";
   std::optional<int> frames;
   int threads = 0;
   bool resume = false, overwrite = false, strict = false;
@@ -37,10 +37,7 @@ void add_run(CLI::App& app, Action& action) {
   a->scene.add_to(*verb);
   verb->add_option("--out", a->out, "the run's folder (default: the scene's output.folder)");
   verb->add_option("--frames", a->frames, "stop after this frame")->transform(whole_number(1, 1000000));
-  std::string kinds;
-  for (const BackendInfo& b : backends())
-    kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : " or ", b.name, b.about);
-  verb->add_option("--backend", a->backend, kinds)->check(CLI::IsMember(backend_names()))->capture_default_str();
+  add_backend(*verb, a->backend, "cpu, with --resume the one that the run goes on from");
   add_isa(*verb, a->isa);
   CLI::Option* resume = verb->add_flag("--resume", a->resume, "go on from the newest checkpoint");
   verb->add_flag("--overwrite", a->overwrite, "replace a run that is in the folder")->excludes(resume);

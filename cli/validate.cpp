@@ -49,6 +49,7 @@ int run_cases(const ValidateArguments& a) {
   const ThreadLimit threads(a.threads);
   // Checks that would fail after minutes of computing fail here.
   const auto cases = wanted(a, options.level);
+  validate::check_backend(options);
   make_folder(a.out);
   check_replaceable(std::filesystem::path(a.out) / fmt::format("{}.svg", cases[0]->name));
   if (!a.markdown.empty()) check_replaceable(a.markdown);
@@ -99,6 +100,7 @@ void add_validate(CLI::App& app, Action& action) {
   auto* cfl = verb->add_option("--cfl", a->options.cfl,
                                "of all random scenes, beyond what scenes may ask for too, instead of the drawn ones")
                   ->check(number_in(0.01, 10));
+  add_backend(*verb, a->options.backend, "cpu; not one in double, which cases ask for themselves");
   add_threads(*verb, a->threads);
   verb->callback([=, &action] {
     a->of_stability = given({draws, seed, draw, cfl});

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/registry.h"
 
 namespace dreampm::cli {
 
@@ -142,6 +143,14 @@ void add_isa(CLI::App& verb, std::string& isa) {
           "machine), sse4, avx2 or avx512")
       ->check(CLI::IsMember(sets))
       ->capture_default_str();
+}
+
+void add_backend(CLI::App& verb, std::string& backend, const std::string& otherwise) {
+  std::string kinds;
+  for (const BackendInfo& b : backends())
+    kinds += fmt::format("{}{} ({})", kinds.empty() ? "" : " or ", b.name, b.about);
+  verb.add_option("--backend", backend, fmt::format("{}; default {}", kinds, otherwise))
+      ->check(CLI::IsMember(backend_names()));
 }
 
 std::string grouped(std::uint64_t n) {

@@ -99,6 +99,9 @@ void add_threads(CLI::App& verb, int& threads);
 /// --isa, shared by the verbs that simulate.
 void add_isa(CLI::App& verb, std::string& isa);
 
+/// --backend, shared by the verbs that simulate. `otherwise`: what is taken without it.
+void add_backend(CLI::App& verb, std::string& backend, const std::string& otherwise);
+
 /// What starts this very program: its name if the PATH leads to it, else where it lies.
 std::string own_program();
 

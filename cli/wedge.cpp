@@ -52,6 +52,7 @@ std::vector<std::string> words_of(const WedgeVerb& a) {
   std::vector<std::string> words{a.scene.file};
   if (!a.scene.variant.empty()) words.insert(words.end(), {"--variant", a.scene.variant});
   for (const std::string& o : a.scene.overrides) words.insert(words.end(), {"--set", o});
+  if (!a.farm.options.backend.empty()) words.insert(words.end(), {"--backend", a.farm.options.backend});
   if (a.farm.options.isa != "auto") words.insert(words.end(), {"--isa", a.farm.options.isa});
   const int threads = a.farm.options.threads > 0 ? a.farm.options.threads : std::max(1, thread_count() / a.jobs);
   words.insert(words.end(), {"--threads", std::to_string(threads)});
@@ -118,7 +119,8 @@ void add_wedge(CLI::App& app, Action& action) {
                           ->transform(whole_number(1, 1024)));
   a->farm.add_to(*verb, false);
   verb->get_option("--to")->excludes(of_scenes.back());  // a farm has its own number
-  for (const char* name : {"--to", "--chunk", "--isa", "--threads"}) of_scenes.push_back(verb->get_option(name));
+  for (const char* name : {"--to", "--chunk", "--backend", "--isa", "--threads"})
+    of_scenes.push_back(verb->get_option(name));
   of_scenes.push_back(
       verb->add_option("--out", a->out, "the wedge's folder (default: the scene's output.folder and -wedge)"));
   verb->callback([a, of_scenes, &action] {

@@ -204,6 +204,7 @@ std::string json_of(const std::vector<Result>& results) {
       for (const auto& p : r.plots) one["plots"].push_back(p.string());
     }
     for (const Attachment& a : r.attachments) one["attachments"].push_back({{"file", a.name}, {"about", a.about}});
+    if (!r.options.backend.empty()) one["backend"] = r.options.backend;
     if (!r.error.empty()) one["error"] = r.error;
     one["pass"] = r.passed();
     (r.passed() ? passed : failed)++;
@@ -217,10 +218,11 @@ std::string json_of(const std::vector<Result>& results) {
 
 std::string section_of(const Result& r, const std::string& plots) {
   const std::string_view how = r.passed() ? "passed" : r.known() ? "missed as known" : "FAILED";
-  std::string s =
-      fmt::format("## {}\n\n{}\n\nReference: {}.\n\n{}{} at {} resolution by {}, commit {}, on {}.\n\n", r.which->name,
-                  r.which->about, r.which->source, result_mark, how, r.options.level == Level::full ? "full" : "quick",
-                  version, commit, this_machine("auto", thread_count()).cpu);
+  std::string s = fmt::format("## {}\n\n{}\n\nReference: {}.\n\n{}{} at {} resolution by {}, commit {}, on {}{}.\n\n",
+                              r.which->name, r.which->about, r.which->source, result_mark, how,
+                              r.options.level == Level::full ? "full" : "quick", version, commit,
+                              this_machine("auto", thread_count()).cpu,
+                              r.options.backend.empty() ? "" : fmt::format(", --backend {}", r.options.backend));
   const std::string missed = missed_by(r, "- ");
   if (!missed.empty()) s += missed + "\n";
   for (const SetUp& up : r.set_ups)

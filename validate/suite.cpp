@@ -9,6 +9,7 @@
 
 #include "dreampm/base/log.h"
 #include "dreampm/base/parallel.h"
+#include "validate/validation_run.h"
 
 namespace dreampm::validate {
 namespace {
@@ -84,6 +85,8 @@ class Suite {
 };
 
 }  // namespace
+
+void check_backend(const Options& options) { float_backend(options); }
 
 std::vector<Result> run_cases(std::span<const Case* const> cases, const Options& options,
                               const std::filesystem::path& folder, const std::function<void(const Result&)>& done) {

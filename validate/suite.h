@@ -8,6 +8,9 @@
 
 namespace dreampm::validate {
 
+/// Throws InputError where this machine cannot run the options' backend, or it computes in double.
+void check_backend(const Options& options);
+
 /// Runs the cases, as many at once as there are threads, each on one; a case alone has all of them.
 /// Results do not depend on it. Those that take longest begin first; done() is called in the order
 /// of `cases`, one at a time, from any thread. Returns the results in that order; those of cases

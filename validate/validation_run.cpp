@@ -1,5 +1,6 @@
 #include "validate/validation_run.h"
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/scene/parse.h"
 #include "validate/built_in.h"
 
@@ -17,6 +18,15 @@ std::string text_of(const std::string& name) {
 }
 
 }  // namespace
+
+std::unique_ptr<Backend<float>> float_backend(const Options& options) {
+  AnyBackend made = dreampm::make_backend(options.backend);
+  if (auto* in_float = std::get_if<std::unique_ptr<Backend<float>>>(&made)) return std::move(*in_float);
+  fail_input(
+      "validate: the backend {} computes in double; what is chosen is that of the runs in float, and cases "
+      "that look at double have it",
+      options.backend);
+}
 
 std::string scene_text(std::string_view name) { return text_of(std::string(name) + ".yaml"); }
 

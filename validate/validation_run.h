@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "dreampm/backend/cpu/cpu.h"
+#include "dreampm/backend/backend.h"
 #include "dreampm/backend/reference/reference.h"
 #include "dreampm/base/interrupt.h"
 #include "dreampm/run/scene_engine.h"
@@ -30,15 +30,19 @@ model::Scene built_in_scene(std::string_view name, const std::vector<std::string
 /// lie in a lattice.
 std::vector<std::string> by_projection(std::string_view body, const std::vector<std::string>& more = {});
 
-/// R = float runs on the cpu backend, double on the reference.
+/// Makes the backend of the runs in float. Throws InputError for one that computes in double, and
+/// as make_backend does.
+std::unique_ptr<Backend<float>> float_backend(const Options& options);
+
+/// R = float runs on the backend of the options, double on the reference.
 template <class R>
 class ValidationRun {
  private:
   Trial& trial_;
   SceneEngine<R> scene_;
-  static std::unique_ptr<Backend<R>> make_backend() {
+  static std::unique_ptr<Backend<R>> make_backend(const Options& options) {
     if constexpr (sizeof(R) == sizeof(float))
-      return make_cpu_backend();
+      return float_backend(options);
     else
       return make_reference_backend<R>();
   }
@@ -48,7 +52,7 @@ class ValidationRun {
       : ValidationRun(trial, built_in_scene(scene, overrides)) {}
   ValidationRun(Trial& trial, const model::Scene& scene)
       : trial_(trial),
-        scene_(scene, scene.name, make_backend()),
+        scene_(scene, scene.name, make_backend(trial.options())),
         world(scene_.engine().world()),
         seeds(scene_.start().seeds) {
     trial.set_up(scene.name, set_up_of(scene, scene_.start().world));

@@ -109,15 +109,17 @@ class Job:
         return f"{TITLES.get(p.stage, p.stage)} {p.done}/{p.total}" + (f", {duration(left)} left" if left else "")
 
 
-def bake_calls(command, scene, out, threads=0):
+def bake_calls(command, scene, out, threads=0, backend="cpu"):
     """Simulates from the start, in place of what was baked before, then meshes."""
     limit = ["--threads", str(threads)] if threads else []
-    return [[command, "run", scene, "--out", out, "--overwrite", *limit], [command, "surface", out, *limit]]
+    return [[command, "run", scene, "--out", out, "--overwrite", "--backend", backend, *limit],
+            [command, "surface", out, *limit]]
 
 
-def resume_calls(command, out, frames, threads=0):
+def resume_calls(command, out, frames, threads=0, backend="cpu"):
     """Goes on with what lies in the folder, whatever became of the scene since, up to that number of frames."""
     limit = ["--threads", str(threads)] if threads else []
     scene = os.path.join(out, "scene.yaml")
-    return [[command, "run", scene, "--set", f"time.frames={frames}", "--out", out, "--resume", *limit],
+    return [[command, "run", scene, "--set", f"time.frames={frames}", "--out", out, "--resume", "--backend", backend,
+             *limit],
             [command, "surface", out, *limit]]

@@ -250,8 +250,9 @@ class Simulation {
   // ---- memory
 
   Snapshot snapshot() const;
-  /// Goes back to a snapshot of a simulation of the same scene, backend and instruction set. Throws
-  /// InputError else.
+  /// Goes back to a snapshot of a simulation of the same scene: to the very bits, and with another
+  /// backend or instruction set of the same precision on from there to rounding. Throws InputError
+  /// else.
   void restore(const Snapshot& snapshot);
 
   // ---- files

@@ -211,7 +211,8 @@ void bind_state(nb::class_<Held>& c) {
       .def(
           "restore", [](Held& h, const Snapshot& then) { h.call([&](Simulation& s) { s.restore(then); }); },
           nb::arg("snapshot"),
-          "Goes back to a snapshot of a simulation of the same scene, backend and instruction set.")
+          "Goes back to a snapshot of a simulation of the same scene. Of another backend of the same precision,\n"
+          "cpu or cuda, it goes on to rounding; of another precision it raises InputError.")
       .def(
           "save", [](Held& h, const std::filesystem::path& file) { h.call([&](Simulation& s) { s.save(file); }); },
           nb::arg("file"), nb::sig("def save(self, file: str | os.PathLike[str]) -> None"),

@@ -139,10 +139,20 @@ def test_cancel_and_resume(tmp_path):
     assert one.state == "stopped" and 3 <= reached < 400 and run.can_resume()
     assert run.record()["status"] == "interrupted"
 
+    calls = job.resume_calls(COMMAND, run.path, reached + 2, 2, "cuda")
+    assert calls[0][calls[0].index("--backend") + 1] == "cuda"
     more = finish(job.Job(job.resume_calls(COMMAND, run.path, reached + 2, 2)))
     assert more.state == "done", more.error
     assert run.last_frame() == reached + 2 and os.path.exists(run.surface_of("jelly", reached + 2))
     assert any("going on from" in line for line in more.progress.lines)
+
+
+def test_a_bake_by_a_gpu_that_is_not_there_says_so(tmp_path, monkeypatch):
+    monkeypatch.setenv("DREAMPM_CUDA", "/nowhere.so")
+    write_scene(tmp_path / "scene.yaml", small_setup(tmp_path))
+    one = finish(job.Job(job.bake_calls(COMMAND, str(tmp_path / "scene.yaml"), str(tmp_path / "run"), 2, "cuda")))
+    assert one.state == "failed" and "no CUDA: /nowhere.so" in one.error
+    assert not (tmp_path / "run").exists()
 
 
 def test_errors_reach_the_user(tmp_path):

@@ -275,9 +275,13 @@ TEST_F(Make, ARunSaysWhetherItGoesOnOrStartsAgain) {
   Typed t = type("run dam.yaml --backend reference --resume");
   ASSERT_EQ(t.code, 0) << t.err;
   EXPECT_THAT(t.err, HasSubstr("no checkpoint to go on from: starts at frame 1\n"));
-  t = type("run dam.yaml --resume");  // by the cpu backend
+  t = type("run dam.yaml --resume");  // by the backend of the run
+  EXPECT_EQ(t.code, 0) << t.err;
+  EXPECT_EQ(record("out/dam").at("backend"), "reference");
+  t = type("run dam.yaml --resume --backend cpu");
   EXPECT_EQ(t.code, 2);
-  EXPECT_THAT(t.err, HasSubstr("was written by the backend reference; resume with --backend reference"));
+  EXPECT_THAT(t.err,
+              HasSubstr("checkpoint_000003.h5: is in double, as the backend reference computes, and not in float"));
   EXPECT_EQ(count("particles", ".ply"), 3);
   t = type("run dam.yaml --overwrite");
   EXPECT_EQ(t.code, 0) << t.err;

@@ -66,7 +66,7 @@ TEST_F(Cuda, NamesTheDeviceThatFails) {
   const Typed small = chosen("3", "run dam.yaml --backend cuda --out small");
   EXPECT_EQ(small.code, 1);
   EXPECT_THAT(small.err,
-              AllOf(HasSubstr("160 particles need about"), HasSubstr("0.0 MB are free"), HasSubstr("spacing")));
+              AllOf(HasSubstr("80 particles need about"), HasSubstr("0.0 MB are free"), HasSubstr("spacing")));
   EXPECT_THAT(chosen("4", "info --device").out, HasSubstr("CUDA device 0: there is no device of that number"));
 }
 

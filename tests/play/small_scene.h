@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -32,9 +33,11 @@ inline PlayScene large_step_scene(const std::string& more = "") {
                       "tank.yaml")};
 }
 
+/// DREAMPM_TEST_BACKEND=cuda runs the tests by another backend than cpu.
 inline PlayOptions quiet_options(int threads = 1) {
   static SilentHost silent;
   PlayOptions o;
+  if (const char* const backend = std::getenv("DREAMPM_TEST_BACKEND")) o.simulation.backend = backend;
   o.simulation.threads = threads, o.simulation.host = &silent, o.step_seconds = 0;
   return o;
 }

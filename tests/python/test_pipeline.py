@@ -19,9 +19,13 @@ def test_make_goes_the_whole_way_and_knows_what_is_done(tmp_path, caplog):
     assert dm.make(SOURCE / "scenes/dam-break.yaml", **scene).stat().st_mtime_ns == when
 
 
-def test_make_refuses_as_the_command_does(tmp_path):
+def test_make_refuses_as_the_command_does(tmp_path, monkeypatch):
     with pytest.raises(dm.InputError, match="no-such.yaml"):
         dm.make(tmp_path / "no-such.yaml")
+    monkeypatch.setenv("DREAMPM_CUDA", "/nowhere.so")
+    with pytest.raises(dm.InputError, match="no CUDA"):
+        dm.make(SOURCE / "scenes/dam-break.yaml", variant="tiny", out=str(tmp_path / "film"), backend="cuda")
+    assert not (tmp_path / "film").exists()
 
 
 def test_validate(tmp_path):
@@ -30,6 +34,8 @@ def test_validate(tmp_path):
     assert list(tmp_path.glob("still-column*.svg"))
     with pytest.raises(dm.InputError, match="still-column"):
         dm.validate("still-colum")
+    with pytest.raises(dm.InputError, match="computes in double"):
+        dm.validate("still-column", backend="reference")
     with pytest.raises(TypeError):
         dm.validate()
 

@@ -336,11 +336,32 @@ def test_a_circle_through_an_observer_is_collected(dam):
     assert gone() is None
 
 
-def test_what_is_wrong_is_said(dam):
+def test_a_snapshot_goes_to_another_backend(dam, monkeypatch):
+    monkeypatch.setenv("DREAMPM_CUDA", os.environ["STAND_IN"])
+    cuda, cpu = (dm.Simulation(dam, backend=backend, threads=1) for backend in ("cuda", "cpu"))
+    assert cuda.backend == "cuda" and cuda.isa == "sm_90"
+    cuda.advance_to(0.02)
+    then = cuda.snapshot()
+    cpu.restore(then)
+    assert np.array_equal(cpu.particles["water"].position, cuda.particles["water"].position)
+    cuda.advance_to(0.04), cpu.advance_to(0.04)
+    assert np.allclose(cpu.particles["water"].position, cuda.particles["water"].position, atol=1e-3 * dam.spacing)
+    future = cuda.hash()
+    cuda.restore(then)
+    cuda.advance_to(0.04)
+    assert cuda.hash() == future
+    with pytest.raises(dm.InputError, match="precision of reference"):
+        dm.Simulation(dam, backend="reference").restore(then)
+
+
+def test_what_is_wrong_is_said(dam, monkeypatch):
     with pytest.raises(dm.InputError, match="cpu"):
         dm.Simulation(dam, backend="gpu")
     with pytest.raises(dm.InputError, match="it has water"):
         dm.Simulation(dam).surface("watr")
+    monkeypatch.setenv("DREAMPM_CUDA", "/nowhere.so")
+    with pytest.raises(dm.InputError, match="no CUDA: /nowhere.so"):
+        dm.Simulation(dam, backend="cuda")
     sim = dm.Simulation(dam.with_({"time.dt": 0.0005}))
     sim.materials["water"].bulk_modulus = 1e9
     with pytest.raises(dm.InputError, match="dt"):

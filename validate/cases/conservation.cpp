@@ -60,13 +60,13 @@ Drift judge(Trial& t, const std::string& who, double gate, double growth_gate) {
 
 void run(Trial& t) {
   const Drift exact = judge<double>(t, "reference (double)", 1e-12, 0),
-              fast = judge<float>(t, "cpu (float)", 1e-4, 1e-4);
+              fast = judge<float>(t, t.options().in_float(), 1e-4, 1e-4);
   t.plot({"conservation",
           "Energy of a free, turning, shearing block",
           "time  [s]",
           "(kinetic + elastic) / start",
           {{"reference (double)", exact.time, exact.ratio},
-           {"cpu (float)", fast.time, fast.ratio},
+           {t.options().in_float(), fast.time, fast.ratio},
            level("gate", 0, exact.time.back(), 1.001),
            level("the start's", 0, exact.time.back(), 1)}});
 }

@@ -24,9 +24,10 @@ double error(Trial& t, Curve& course, const std::vector<std::string>& overrides 
 }
 
 void run(Trial& t) {
-  Curve exact{"reference (double)", {}, {}}, fast{"cpu (float)", {}, {}}, wrong{"control: gravity 9.80, cpu", {}, {}};
-  const char *const in_double = "reference (double): farthest from x0 + n dt v0 + n(n+1)/2 dt^2 g",
-                    *const in_float = "cpu (float): farthest from it";
+  const std::string who = t.options().in_float();
+  Curve exact{"reference (double)", {}, {}}, fast{who, {}, {}}, wrong{"control: gravity 9.80, " + who, {}, {}};
+  const std::string in_double = "reference (double): farthest from x0 + n dt v0 + n(n+1)/2 dt^2 g",
+                    in_float = who + ": farthest from it";
   t.at_most(in_double, error<double>(t, exact), 1e-12, "m");
   // Positions in float carry about 1e-7 of 2 cells, 800 times, at random: 1e-7.
   t.at_most(in_float, error<float>(t, fast), 5e-6, "m");

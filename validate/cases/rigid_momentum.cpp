@@ -86,7 +86,7 @@ void run(Trial& t) {
       "water is not relaxed: that shifts particles, which changes their angular momentum by some millionths, with or "
       "without a body.");
   const double end = 0.3;
-  const Hit fast = judge<float>(t, "cpu (float)", 1e-5, end);
+  const Hit fast = judge<float>(t, t.options().in_float(), 1e-5, end);
   const double shorter = t.full() ? end : 0.14;
   judge<double>(t, "reference (double), without relaxation of volume", 1e-12, shorter,
                 {"materials.water.relaxation=0"});

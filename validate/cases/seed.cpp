@@ -41,7 +41,7 @@ void run(Trial& t) {
     const std::string before = name + ", reference (double): before contact",
                       after = name + ", reference (double): after contact",
                       state = name + ", reference (double): worst particle at step 1500",
-                      rms = name + ", cpu (float): rms from the double run at the end";
+                      rms = name + ", " + t.options().in_float() + ": rms from the double run at the end";
     t.at_most(before, exact.before, 1e-9, "m");
     t.at_most(after, exact.after, 1e-6, "m");
     t.at_most(state, exact.state_max, 1e-6, "m");
@@ -52,7 +52,7 @@ void run(Trial& t) {
     t.control(what, after, light.after);
     t.control(what, state, light.state_max);
     if (elastic) t.control(what, rms, rms_distance(light.last, exact.last));
-    t.report(name + ", cpu (float): rms from the port at step 1500", fast.state_rms, "m");
+    t.report(name + ", " + t.options().in_float() + ": rms from the port at step 1500", fast.state_rms, "m");
     plot.curves.push_back(curve(name + ", double", exact));
     plot.curves.push_back(curve(name + ", float", fast));
     if (!elastic)

@@ -80,8 +80,8 @@ struct NodeStep : NodeConstants<R> {
       : NodeConstants<R>(node_constants(w, dt, of_step)), world(w), fields(w, dt) {}
 };
 
-/// The numbers of stage `stage` of `stages` of RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 - mu_j, and all of it
-/// 2/(s^2 + s) of the step; a stage ends at (j^2 + j)/(s^2 + s) of it.
+/// The numbers of stage `stage` of `stages` of RKL1: mu_j = (2 j - 1)/j, nu_j = (1 - j)/j = 1 -
+/// mu_j, and all of it 2/(s^2 + s) of the step; a stage ends at (j^2 + j)/(s^2 + s) of it.
 struct RklFactors {
   double kept, gain;  ///< of the change before, and of what the whole step would give
   double part;        ///< of the step, that the stage adds

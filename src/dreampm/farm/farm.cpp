@@ -33,7 +33,8 @@ Job new_job(const std::string& name, const FarmOptions& options) {
   job.name = name;
   job.chunk = options.chunk;
   job.program = options.program;
-  if (options.isa != "auto") job.of_simulate = {"--isa", options.isa};
+  if (!options.backend.empty()) job.of_simulate = {"--backend", options.backend};
+  if (options.isa != "auto") job.of_simulate.insert(job.of_simulate.end(), {"--isa", options.isa});
   if (options.threads > 0)
     for (auto* words : {&job.of_simulate, &job.of_frames})
       words->insert(words->end(), {"--threads", std::to_string(options.threads)});

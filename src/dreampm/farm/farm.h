@@ -15,6 +15,7 @@ struct FarmOptions {
   std::string to;                   ///< a name of formats()
   int chunk = 10;                   ///< frames a task
   std::string program = "dreampm";  ///< what machines start
+  std::string backend;              ///< of the simulation; empty: the default
   std::string isa = "auto";         ///< instruction set of the simulation
   int threads = 0;                  ///< of a task; 0: all cores
 };

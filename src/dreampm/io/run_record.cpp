@@ -225,6 +225,8 @@ std::string RunRecord::to_json() const {
   j["dx"] = dx;
   j["shift"] = {shift.x, shift.y, shift.z};
   j["backend"] = backend;
+  for (const EarlierBackend& b : earlier_backends)
+    j["earlier_backends"].push_back({{"backend", b.backend}, {"isa", b.isa}, {"last_frame", b.last_frame}});
   j["bodies"] = Json::array();
   for (const BodyRecord& b : bodies)
     j["bodies"].push_back({{"name", b.name}, {"first_id", b.first_id}, {"count", b.count}});
@@ -293,6 +295,11 @@ RunRecord RunRecord::from_json(const std::string& text, const std::string& sourc
     if (axis != 3) fail_input("{}: shift has {} numbers, must have 3", source, axis);
   }
   r.backend = n.get<std::string>("backend");
+  if (n.has("earlier_backends"))
+    n.at("earlier_backends").each([&](const JsonNode& b) {
+      r.earlier_backends.push_back(
+          {b.get<std::string>("backend"), b.get<std::string>("isa"), b.get<int>("last_frame")});
+    });
   if (n.has("bodies"))
     n.at("bodies").each([&](const JsonNode& b) {
       r.bodies.push_back({b.get<std::string>("name"), b.get<std::uint64_t>("first_id"), b.get<std::uint64_t>("count")});

@@ -81,6 +81,12 @@ struct BodyRecord {
   std::uint64_t first_id = 0, count = 0;
 };
 
+/// What computed a run up to a frame, before another backend or instruction set went on.
+struct EarlierBackend {
+  std::string backend, isa;
+  int last_frame = 1;
+};
+
 struct RunRecord {
   static constexpr int format = 1;
   std::string dreampm;  ///< version that wrote it
@@ -97,6 +103,7 @@ struct RunRecord {
   double dx = 0;       ///< m
   Vec3d shift{};       ///< m, to add to the places in particle and surface files; zero near the origin
   std::string backend;
+  std::vector<EarlierBackend> earlier_backends{};  ///< by rising frames; empty of a run that one backend computed
   std::vector<BodyRecord> bodies;  ///< in the order of the scene; a record of an earlier version has none
   std::vector<FrameRecord> frames;
   std::map<std::string, StageRecord> stages;  ///< simulate, foam, surface, render, video

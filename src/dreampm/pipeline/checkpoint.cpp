@@ -9,6 +9,9 @@ namespace {
 constexpr const char* archive_format = "dreampm-checkpoint";
 constexpr std::uint32_t archive_version = 6;
 
+template <class R>
+constexpr const char* precision_of = sizeof(R) == sizeof(float) ? "float" : "double";
+
 std::vector<double> flat(const ImpulseSum& p) {
   return {p.impulse.x, p.impulse.y, p.impulse.z, p.angular.x, p.angular.y, p.angular.z, p.work};
 }
@@ -81,8 +84,13 @@ ProbeMemories read_probes(const ArchiveReader& a) {
 }
 
 CheckpointInfo read_info(const ArchiveReader& a) {
-  return {a.scene_hash(), a.text("backend"), a.text("isa"), read_sums(a), a.value<std::uint64_t>("particle_steps"),
-          read_probes(a)};
+  return {a.scene_hash(),
+          a.text("backend"),
+          a.text("isa"),
+          read_sums(a),
+          a.value<std::uint64_t>("particle_steps"),
+          read_probes(a),
+          a.has("precision") ? a.text("precision") : ""};
 }
 
 }  // namespace
@@ -92,6 +100,7 @@ void save_checkpoint(const std::filesystem::path& file, const World<R>& w, const
   write_archive(file, {archive_format, archive_version, info.scene_hash}, [&](ArchiveWriter& a) {
     a.add("backend", info.backend);
     a.add("isa", info.isa);
+    a.add("precision", precision_of<R>);
     a.add("particle_steps", info.particle_steps);
     write_sums(a, info.sums);
     write_probes(a, info.probes);
@@ -114,6 +123,10 @@ CheckpointInfo load_checkpoint(const std::filesystem::path& file, const std::str
   const ArchiveReader a(file, archive_format, archive_version);
   a.expect_scene(scene_hash);
   const CheckpointInfo info = read_info(a);
+  if (const std::string& there = info.precision; !there.empty() && there != precision_of<R>)
+    throw OtherPrecision(
+        fmt::format("{}: is in {}, as the backend {} computes, and not in {}: --backend {} goes on from it",
+                    file.string(), there, info.backend, precision_of<R>, info.backend));
   read_world(a, w);
   return info;
 }

@@ -23,18 +23,16 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder) {
 }
 
 template <class R>
-std::optional<SavedRun<R>> newest_checkpoint(const fs::path& folder, const World<double>& empty, const SavedBy& by) {
+std::optional<SavedRun<R>> newest_checkpoint(const fs::path& folder, const World<double>& empty,
+                                             const std::string& scene_hash) {
   const std::vector<fs::path> files = checkpoints_in(folder);
   for (const fs::path& file : files) {
     SavedRun<R> saved{file, as_world<R>(empty), {}};
     try {
-      if (const std::string backend = checkpoint_info(file).backend; backend != by.backend)
-        fail_input("{}: was written by the backend {}; resume with --backend {}", file.string(), backend, backend);
-      saved.info = load_checkpoint(file, by.scene_hash, saved.world);
-      // Another instruction set would round differently and give another future.
-      if (by.isa != "auto" && by.isa != saved.info.isa)
-        fail_input("{}: was computed with {}; resume with that, or start again", file.string(), saved.info.isa);
+      saved.info = load_checkpoint(file, scene_hash, saved.world);
       return saved;
+    } catch (const OtherPrecision&) {
+      throw;  // so are those before it
     } catch (const InputError& e) {
       if (file == files.back())
         fail_input("{}; no other checkpoint is left: without {} the run starts again", e.what(), folder.string());
@@ -55,14 +53,14 @@ void CheckpointWriter<R>::write() {
   engine_.download(MatterFields::all);
   const World<R>& world = std::as_const(engine_).world();
   save_checkpoint(folder_ / numbered("checkpoint", world.frame, ".h5"), world,
-                  {by_.scene_hash, by_.backend, std::string(engine_.backend().isa()), totals_.carried(),
-                   totals_.particle_steps(), probes_.memories()});
+                  {scene_hash_, std::string(engine_.backend().name()), std::string(engine_.backend().isa()),
+                   totals_.carried(), totals_.particle_steps(), probes_.memories()});
   const auto files = checkpoints_in(folder_);
   for (std::size_t i = checkpoints_kept; i < files.size(); ++i) fs::remove(files[i]);
 }
 
-template std::optional<SavedRun<float>> newest_checkpoint(const fs::path&, const World<double>&, const SavedBy&);
-template std::optional<SavedRun<double>> newest_checkpoint(const fs::path&, const World<double>&, const SavedBy&);
+template std::optional<SavedRun<float>> newest_checkpoint(const fs::path&, const World<double>&, const std::string&);
+template std::optional<SavedRun<double>> newest_checkpoint(const fs::path&, const World<double>&, const std::string&);
 template class CheckpointWriter<float>;
 template class CheckpointWriter<double>;
 

@@ -20,16 +20,11 @@ struct SavedRun {
   World<R> world;
   CheckpointInfo info;
 };
-/// What a checkpoint must be of, to be gone on from.
-struct SavedBy {
-  std::string scene_hash, backend;
-  std::string isa;  ///< auto: any
-};
 /// The newest checkpoint that can be read, over the `empty` world of its scene; nothing in a folder
 /// without any. It warns of those that cannot be read; throws InputError where none can.
 template <class R>
 std::optional<SavedRun<R>> newest_checkpoint(const std::filesystem::path& folder, const World<double>& empty,
-                                             const SavedBy& by);
+                                             const std::string& scene_hash);
 
 /// Writes checkpoints while an engine steps, and removes the oldest.
 template <class R>
@@ -40,13 +35,13 @@ class CheckpointWriter final : public Observer {
     int every = 0;  ///< frames; 0: only the last
     int last = 1;
   };
-  /// `totals`: of the same engine, added to it before. Of `by` the instruction set is the engine's.
-  CheckpointWriter(Engine<R>& engine, const FrameTotals<R>& totals, const ProbeSet<R>& probes, SavedBy by,
+  /// `totals`: of the same engine, added to it before.
+  CheckpointWriter(Engine<R>& engine, const FrameTotals<R>& totals, const ProbeSet<R>& probes, std::string scene_hash,
                    std::filesystem::path folder, const When& when)
       : engine_(engine),
         totals_(totals),
         probes_(probes),
-        by_(std::move(by)),
+        scene_hash_(std::move(scene_hash)),
         folder_(std::move(folder)),
         when_(when) {}
   /// One of the moment at hand.
@@ -58,7 +53,7 @@ class CheckpointWriter final : public Observer {
   Engine<R>& engine_;
   const FrameTotals<R>& totals_;
   const ProbeSet<R>& probes_;
-  SavedBy by_;
+  std::string scene_hash_;
   std::filesystem::path folder_;
   When when_;
 };

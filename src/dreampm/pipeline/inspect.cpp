@@ -214,6 +214,10 @@ Inspection inspect_run(const fs::path& folder) {
   out.facts["frames_asked"] = static_cast<std::uint64_t>(run.scene.time.frames);
   out.facts["backend"] = run.record.backend;
   out.facts["isa"] = run.record.machine.isa;
+  std::string earlier;
+  for (const EarlierBackend& b : run.record.earlier_backends)
+    earlier += fmt::format("{}{} ({}) to frame {}", earlier.empty() ? "" : ", ", b.backend, b.isa, b.last_frame);
+  if (!earlier.empty()) out.facts["earlier_backends"] = earlier;
   std::string probes;
   for (const auto& [name, type] : run.record.probes) probes += (probes.empty() ? "" : ", ") + name + " (" + type + ")";
   if (!probes.empty()) out.facts["probes"] = probes;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <optional>
 
+#include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
@@ -47,13 +48,12 @@ bool simulate_rest(const model::Scene& scene, const SceneSource& source, const M
   bool resume = false;
   if (record) {
     const auto stage = record->stages.find("simulate");
+    const bool other_backend = !options.backend.empty() && options.backend != record->backend,
+               other_isa = options.isa != "auto" && options.isa != record->machine.isa;
     const bool same = stage != record->stages.end() && stage->second.settings_hash &&
                       *stage->second.settings_hash == scene::scene_hash(scene, scene::Part::particles) &&
-                      record->backend == SimulateOptions().backend &&
-                      (options.isa == "auto" || options.isa == record->machine.isa);
-    const char* const changed = record->backend != SimulateOptions().backend                  ? "the backend"
-                                : options.isa != "auto" && options.isa != record->machine.isa ? "the instruction set"
-                                                                                              : "the scene";
+                      !other_backend && !other_isa;
+    const char* const changed = other_backend ? "the backend" : other_isa ? "the instruction set" : "the scene";
     const bool whole = all_frames_there(*record, scene, options.folder);
     if (same && whole) return false;
     if (!same) info("simulate: {} changed: starts again", changed);
@@ -61,10 +61,14 @@ bool simulate_rest(const model::Scene& scene, const SceneSource& source, const M
     const bool gone = !whole && !record->frames.empty() && record->frames.back().frame >= scene.time.frames;
     if (same && gone) info("simulate: particle files are gone: starts again");
     resume = same && !gone;
+    if (const std::string_view usual = backends().front().name;
+        !resume && options.backend.empty() && record->backend != usual)
+      info("simulate: by the backend {}; the run before was by {}", usual, record->backend);
   }
   SimulateOptions simulation;
   simulation.folder = options.folder;
   simulation.threads = options.threads;
+  simulation.backend = options.backend;
   simulation.isa = options.isa;
   simulation.resume = resume;
   simulation.lock = lock;

@@ -10,7 +10,10 @@ namespace dreampm {
 struct MakeOptions {
   std::filesystem::path folder;  ///< of the run
   int threads = 0;               ///< 0: all cores
-  std::string isa = "auto";      ///< instruction set of the simulation; a run made with another starts again
+  /// A name of backend/registry.h; a run made with another starts again. Empty: that of the run,
+  /// else the default.
+  std::string backend{};
+  std::string isa = "auto";  ///< instruction set of the simulation; a run made with another starts again
 };
 
 /// Simulates, meshes, draws and encodes; every stage goes on where it stopped and leaves what is up

@@ -29,9 +29,12 @@ void RunRecordFile<R>::begin(const Vec3d& shift) {
 }
 
 template <class R>
-void RunRecordFile<R>::go_on() {
+void RunRecordFile<R>::go_on(const BackendChoice& before) {
   record_ = RunRecord::load(folder_ / "run.json");
-  std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > engine_.world().frame; });
+  const int frame = engine_.world().frame;
+  std::erase_if(record_.frames, [&](const FrameRecord& f) { return f.frame > frame; });
+  std::erase_if(record_.earlier_backends, [&](const EarlierBackend& b) { return b.last_frame >= frame; });
+  if (before != choice_of(engine_.backend())) record_.earlier_backends.push_back({before.backend, before.isa, frame});
 }
 
 template <class R>

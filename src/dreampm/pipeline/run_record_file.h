@@ -8,6 +8,7 @@
 #include <string>
 
 #include "dreampm/io/run_record.h"
+#include "dreampm/pipeline/backend_choice.h"
 #include "dreampm/pipeline/run_lock.h"
 #include "dreampm/run/ledger_observer.h"
 #include "dreampm/run/ledger_row.h"
@@ -35,8 +36,8 @@ class RunRecordFile final : public Observer {
 
   /// A new record.
   void begin(const Vec3d& shift);
-  /// That of the folder, up to the world's frame.
-  void go_on();
+  /// That of the folder, up to the world's frame, which `before` computed.
+  void go_on(const BackendChoice& before);
   /// What the run is: from now on it counts as interrupted until it ends.
   void describe(const model::Scene& scene, const SceneSource& source, const std::string& scene_hash,
                 const InitialState& start);

@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "dreampm/backend/registry.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/file.h"
 #include "dreampm/base/log.h"
@@ -15,6 +14,7 @@
 #include "dreampm/base/progress.h"
 #include "dreampm/io/numbered.h"
 #include "dreampm/pictures/frames.h"
+#include "dreampm/pipeline/backend_choice.h"
 #include "dreampm/pipeline/checkpoint_writer.h"
 #include "dreampm/pipeline/estimate.h"
 #include "dreampm/pipeline/fill_report.h"
@@ -82,7 +82,10 @@ struct RunTask {
   std::shared_ptr<RunLock> lock;
   std::string hash = scene::scene_hash(scene, scene::Part::simulation);
   int last = options.frames.value_or(scene.time.frames);
+  /// What computed the run that it goes on with; nothing where it starts again.
+  std::optional<BackendChoice> earlier = options.resume ? earlier_choice(options.folder) : std::nullopt;
 
+  BackendChoice asked() const { return {options.backend, options.isa}; }
   fs::path checkpoints() const { return options.folder / "checkpoint"; }
   fs::path particles() const { return options.folder / "particles"; }
 };
@@ -101,9 +104,10 @@ struct WatchedScene {
   CheckpointWriter<R> checkpoints;
   ProgressLine<R> progress;
 
-  WatchedScene(const RunTask& task, InitialState start, const std::string& isa)
+  /// `earlier`: what computed that which it goes on from.
+  WatchedScene(const RunTask& task, InitialState start, const std::optional<BackendChoice>& earlier)
       : scene(task.scene, task.source.path, std::move(start),
-              std::get<std::unique_ptr<Backend<R>>>(make_backend(task.options.backend, isa))),
+              std::get<std::unique_ptr<Backend<R>>>(make_chosen(task.asked(), earlier))),
         totals(scene.engine()),
         particles(scene.engine(), scene.start().bodies,
                   {scene::kept_attributes(task.scene),
@@ -114,8 +118,7 @@ struct WatchedScene {
         ledger(scene.engine(), totals, task.options.folder / "ledger.csv"),
         record(scene.engine(), totals, ledger, task.options.folder, task.lock),
         strict(ledger),
-        checkpoints(scene.engine(), totals, scene.probes().set(),
-                    SavedBy{task.hash, task.options.backend, task.options.isa}, task.checkpoints(),
+        checkpoints(scene.engine(), totals, scene.probes().set(), task.hash, task.checkpoints(),
                     {task.scene.output.checkpoint_every, task.last}),
         progress(scene.engine(), totals) {
     scene.probes().add(
@@ -190,7 +193,7 @@ class SimulationRun {
   /// `particle_steps`: taken before, in vain.
   void start(std::uint64_t particle_steps = 0) {
     // What it refuses must leave an earlier run as it is.
-    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), task_.options.isa);
+    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), task_.earlier);
     watched_->totals.go_on({}, particle_steps);
     watched_->record.begin(watched_->particles.content().shift);
     describe();
@@ -218,13 +221,15 @@ class SimulationRun {
   /// Goes on from the newest checkpoint that can be read; false if there is none.
   bool restore() {
     const SimulateOptions& options = task_.options;
-    std::optional<SavedRun<R>> saved =
-        newest_checkpoint<R>(task_.checkpoints(), assembled_.world, {task_.hash, options.backend, options.isa});
+    std::optional<SavedRun<R>> saved = newest_checkpoint<R>(task_.checkpoints(), assembled_.world, task_.hash);
     if (!saved) return false;
-    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), saved->info.isa);
+    const BackendChoice before{saved->info.backend, saved->info.isa};
+    watched_ = std::make_unique<WatchedScene<R>>(task_, std::move(assembled_), before);
+    const BackendChoice now = choice_of(watched_->scene.engine().backend());
+    if (now.backend != before.backend) saved->world.scatter_bounds = {};  // nobody kept them
     watched_->scene.go_on(std::move(saved->world), saved->info.probes);
     watched_->totals.go_on(saved->info.sums, saved->info.particle_steps);
-    watched_->record.go_on();
+    watched_->record.go_on(before);
     describe();
     if (!watched_->ledger.go_on())
       fail_input("{}: has no row of frame {}, from which {} goes on; without --resume the run starts again",
@@ -234,6 +239,12 @@ class SimulationRun {
     watched_->scene.start().seeds = {};
     write_run_scene(task_.scene, options.folder);
     info("going on from {} at frame {}", saved->file.filename().string(), world().frame);
+    if (now != before) {
+      const std::string change = fmt::format("{} goes on with what {} computed: the same to rounding, not to the bit",
+                                             now.text(), before.text());
+      // A device is another than before without a word of the user.
+      task_.asked() == BackendChoice{} ? warn("{}", change) : info("{}", change);
+    }
     return true;
   }
 
@@ -277,8 +288,9 @@ class SimulationRun {
 
 SimulateResult simulate(const model::Scene& scene, const SceneSource& source, const SimulateOptions& options) {
   // Asked for once here, so that an unknown one is refused before anything is made.
-  const auto backend = make_backend(options.backend, options.isa);
-  RunTask task{scene, source, options, options.lock ? options.lock : std::make_shared<RunLock>(options.folder)};
+  RunTask task{scene, source, options, nullptr};
+  const auto backend = make_chosen(task.asked(), task.earlier);
+  task.lock = options.lock ? options.lock : std::make_shared<RunLock>(options.folder);
   if (!options.resume && !options.overwrite) refuse_to_replace(options.folder);
   make_folder(task.particles());
   make_folder(task.checkpoints());

@@ -73,8 +73,7 @@ Simulation::Impl::Impl(const Scene& scene, const SimulationOptions& given)
       relay_ = std::make_unique<Relay<R>>(*this, engine);
       engine.add(*relay_);
       made->begin();
-      identity = fmt::format("{} {} {}", scene::scene_hash(description, scene::Part::simulation),
-                             engine.backend().name(), engine.backend().isa());
+      identity = scene::scene_hash(description, scene::Part::simulation);
       for (const model::Probe& p : description.probes)
         identity += fmt::format(" {}", scene::probe_hash(description, p));
       made->probes().sample(true);
@@ -296,23 +295,30 @@ Snapshot Simulation::snapshot() const {
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
     engine.download(MatterFields::all);
     s.data_ = std::make_shared<const Snapshot::Data>(Snapshot::Data{
-        impl_->state, impl_->identity, engine.world(), carries_motion(engine.world()) ? Motion<R>{} : engine.motion(),
-        impl_->probe_set<R>().memories()});
+        impl_->state, impl_->identity, std::string(engine.backend().name()), engine.world(),
+        carries_motion(engine.world()) ? Motion<R>{} : engine.motion(), impl_->probe_set<R>().memories()});
   });
   return s;
 }
 
 void Simulation::restore(const Snapshot& snapshot) {
   if (snapshot.empty() || snapshot.data_->identity != impl_->identity)
-    fail_input("the snapshot is of another scene, backend or instruction set: restore it to a simulation of the same");
+    fail_input("the snapshot is of another scene: restore it to a simulation of the same");
   impl_->with_engine([&]<class R>(Engine<R>& engine) {
-    const World<R>& world = std::get<World<R>>(snapshot.data_->world);
+    const std::string_view backend = engine.backend().name();
+    if (!std::holds_alternative<World<R>>(snapshot.data_->world))
+      fail_input(
+          "the snapshot is of the backend {}, which does not compute in the precision of {}, the backend of this "
+          "simulation",
+          snapshot.data_->backend, backend);
+    World<R> world = std::get<World<R>>(snapshot.data_->world);
+    if (snapshot.data_->backend != backend) world.scatter_bounds = {};  // nobody kept them
     if (carries_motion(world)) {
       Motion<R> carried;
       take_carried_motion(world, carried);
-      engine.replace(World<R>(world), &carried);
+      engine.replace(std::move(world), &carried);
     } else {
-      engine.replace(World<R>(world), &std::get<Motion<R>>(snapshot.data_->motion));
+      engine.replace(std::move(world), &std::get<Motion<R>>(snapshot.data_->motion));
     }
     impl_->probe_set<R>().resume(snapshot.data_->probes, engine.world().time);
   });

@@ -43,7 +43,8 @@ struct SimulationState {
 
 struct Snapshot::Data {
   SimulationState state;
-  std::string identity;  ///< of the simulation's scene, backend and instruction set
+  std::string identity;  ///< of the simulation's scene
+  std::string backend;
   std::variant<World<float>, World<double>> world;
   std::variant<Motion<float>, Motion<double>> motion;
   ProbeMemories probes;

@@ -174,7 +174,7 @@ TEST_F(Films, ThatDoNotEndWhenInterruptedAreKilled) {
   };
   auto began = std::chrono::steady_clock::now();
   {
-    Rendering film(std::filesystem::absolute("slow"), "film.yaml", true, std::chrono::milliseconds(200));
+    Rendering film(std::filesystem::absolute("slow"), "film.yaml", "cpu", true, std::chrono::milliseconds(200));
     for (int n = 0; n < 3000 && !runs(); ++n, std::this_thread::sleep_for(std::chrono::milliseconds(10))) film.look();
     ASSERT_TRUE(runs()) << film.look().what;
     began = std::chrono::steady_clock::now();

@@ -1,5 +1,5 @@
-// Contact of nodes deep inside colliders on a device, and the way of some blocks of nodes to the host
-// and back, where contact with surfaces is.
+// Contact of nodes deep inside colliders on a device, and the way of some blocks of nodes to the
+// host and back, where contact with surfaces is.
 #pragma once
 #include <cstdint>
 

@@ -277,8 +277,8 @@ class Gpu final : public Backend<float> {
   std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
   GridFields<float> next_;                     ///< its block list stays empty
   bool based_ = false;                         ///< whether Memory::base is current
-  /// The parts of the matter of which the World's arrays are current, and whether the device's nodes
-  /// are. Its particles always are.
+  /// The parts of the matter of which the World's arrays are current, and whether the device's
+  /// nodes are. Its particles always are.
   MatterFields home_ = MatterFields::all;
   bool nodes_there_ = false;
   World<float> copy_;  ///< for at_home()

@@ -1,4 +1,5 @@
-// How much of a device's memory a World takes, so that what does not fit is said before it is tried.
+// How much of a device's memory a World takes, so that what does not fit is said before it is
+// tried.
 #pragma once
 #include <cstddef>
 

@@ -62,8 +62,8 @@ struct VisitBlock {
 struct VisitInput {
   NodeConstants<float> step;
   float unweigh[2];  ///< by field, as normalize_old_velocity
-  /// kg: lighter nodes do not count for the largest speed. No particle sees them with a weight above
-  /// a millionth, and their velocity is rounded.
+  /// kg: lighter nodes do not count for the largest speed. No particle sees them with a weight
+  /// above a millionth, and their velocity is rounded.
   float light;
   GridPointers grid;
   NodePlaces places;

@@ -1,5 +1,5 @@
-// The sort of a World whose particles and nodes lie in a device's memory, as Regroup: the same order
-// bit for bit.
+// The sort of a World whose particles and nodes lie in a device's memory, as Regroup: the same
+// order bit for bit.
 #pragma once
 #include <vector>
 

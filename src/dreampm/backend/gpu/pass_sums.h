@@ -15,7 +15,8 @@ struct PassSums {
   N swollen;                             ///< by volume at rest [1]
   N shifted[3], turned[3];               ///< cells, and cells m/s
   ScatterBounds scattered;
-  /// Counts of mass that particles gave, less those that came to nodes: not 0 where a node's ran over.
+  /// Counts of mass that particles gave, less those that came to nodes: not 0 where a node's ran
+  /// over.
   std::int64_t counts;
   std::uint32_t pushed;
   bool finite;

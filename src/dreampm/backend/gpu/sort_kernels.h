@@ -55,7 +55,8 @@ struct CountMoves {
 struct SortTargets {
   const std::int32_t* block;
 
-  /// The number of a particle's cell among those of all new blocks, in their order; -1 if it leaves.
+  /// The number of a particle's cell among those of all new blocks, in their order; -1 if it
+  /// leaves.
   DM_FN std::int64_t cell(const SortInput& in, int old_block, const Vec3<float>& at) const {
     const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + in.way(at)];
     return to < 0 ? -1 : std::int64_t{to} * block_nodes + turn_of(at);

@@ -12,9 +12,9 @@ struct StageInput {
   float keep, gain;
   double part;
   Vec3<float> kick;
-  bool first;                    ///< whether no change was before
-  const Node<float>* momenta;    ///< of viscosity
-  const Node<float>* stress;     ///< or null
+  bool first;                  ///< whether no change was before
+  const Node<float>* momenta;  ///< of viscosity
+  const Node<float>* stress;   ///< or null
   Node<float>*old, *change;
   SourceTerms* dragged;  ///< impulses of boundary layers, as VisitInput::given; null without
   SourceTerms* driven;   ///< by block of the grid; `work`: of gravity and stress
@@ -81,8 +81,8 @@ struct BeginStage {
     ImpulseSumOf<float> given;
     BoundaryLayer<float> layer;
     const Node<float> node = in.grid.field[0][at];
-    if (has_mass(node) && boundary_layer(in.step, side, first + node_offset(n), node,
-                                         mixture::viscosity(in.grid.mixture[at]), layer)) {
+    if (has_mass(node) &&
+        boundary_layer(in.step, side, first + node_offset(n), node, mixture::viscosity(in.grid.mixture[at]), layer)) {
       const Vec3<float> lost = lost_in_stage(in.step, layer, stage.gain), before = velocity(node),
                         after = before - lost;
       set_velocity(stage.change[at], velocity(stage.change[at]) - lost);

@@ -195,7 +195,9 @@ void Playground::tell(const std::string& what, bool is_error) {
 }
 bool Playground::is_filmed() const { return !first_->films->file.empty(); }
 int Playground::threads() const { return first_->simulation->threads(); }
-std::string Playground::isa() const { return first_->simulation->isa(); }
+std::string Playground::backend() const {
+  return fmt::format("{}, {}", first_->simulation->backend(), first_->simulation->isa());
+}
 const Simulation& Playground::simulation() const { return *first_->simulation; }
 
 }  // namespace dreampm::play

@@ -68,7 +68,7 @@ class Playground {
   /// Of the world; of both while materials are compared.
   std::uint64_t hash() const;
   int threads() const;
-  std::string isa() const;
+  std::string backend() const;  ///< with its instruction set, as in "cpu, avx2"
   const Simulation& simulation() const;
   /// Of the second side; null while nothing is compared.
   const Simulation* second_simulation() const;

@@ -55,11 +55,12 @@ int exit_code(int status) { return WIFEXITED(status) ? WEXITSTATUS(status) : 128
 
 }  // namespace
 
-Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on,
+Rendering::Rendering(std::filesystem::path program, std::filesystem::path scene, std::string backend, bool goes_on,
                      std::chrono::milliseconds patience)
     : program_(std::move(program)),
       scene_(std::move(scene)),
       log_(std::filesystem::path(scene_).replace_extension(".log")),
+      backend_(std::move(backend)),
       goes_on_(goes_on),
       patience_(patience),
       answer_(std::tmpfile(), &std::fclose) {
@@ -125,7 +126,7 @@ void Rendering::start(const std::vector<std::string>& words, int output) {
 }
 
 void Rendering::make() {
-  start({"make", scene_.string()}, -1);
+  start({"make", scene_.string(), "--backend", backend_}, -1);
   status_.state = RenderStatus::State::running;
   stage_ = 0, stage_began_ = reported_ = Clock::now();
 }

@@ -18,10 +18,10 @@ namespace dreampm::play {
 class Rendering {
  public:
   /// Estimates what the scene will take, and, where `goes_on`, makes the film then. `program`: the
-  /// file of the command dreampm. Lines of the run go to a file beside the scene, its ending
-  /// `.log`. Throws RunError where no process can be started. `patience`: how long what is
-  /// interrupted may take to end before it is killed.
-  Rendering(std::filesystem::path program, std::filesystem::path scene, bool goes_on,
+  /// file of the command dreampm. `backend`: of the film's simulation. Lines of the run go to a
+  /// file beside the scene, its ending `.log`. Throws RunError where no process can be started.
+  /// `patience`: how long what is interrupted may take to end before it is killed.
+  Rendering(std::filesystem::path program, std::filesystem::path scene, std::string backend, bool goes_on,
             std::chrono::milliseconds patience = std::chrono::seconds(10));
   /// Interrupts what runs, which `dreampm make` goes on with, and waits until it has ended, for as
   /// long as `patience` at most.
@@ -50,6 +50,7 @@ class Rendering {
   void end(int code);
 
   std::filesystem::path program_, scene_, log_;
+  const std::string backend_;
   const bool goes_on_;
   const std::chrono::milliseconds patience_;
   bool stops_ = false;

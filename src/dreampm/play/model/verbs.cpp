@@ -80,7 +80,7 @@ void make_film(PlayModel& p, const Action& a, bool goes_on) {
   const SavedAs as = finer_scene(a);
   rendering.reset();  // an estimate that was there takes its files along
   save(p, a.word(0), as);
-  rendering.emplace(p.options.program, a.word(0), goes_on);
+  rendering.emplace(p.options.program, a.word(0), p.simulation->backend(), goes_on);
 }
 
 void render_or_end(PlayModel& p, const Action& a) {

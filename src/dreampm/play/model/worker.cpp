@@ -47,7 +47,7 @@ Worker::Worker(PlayScene scene, const PlayOptions& options, Record record)
       playground_(std::move(scene), with_host(options, *host_)),
       record_(std::move(record)),
       threads_(playground_.threads()),
-      isa_(playground_.isa()) {
+      backend_(playground_.backend()) {
   latest_ = playground_.frame();
   thread_ = std::thread([this] { run(); });
 }

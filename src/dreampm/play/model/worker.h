@@ -43,7 +43,7 @@ class Worker {
   /// Throws what ended the thread, if anything did.
   void check() const;
   int threads() const { return threads_; }
-  const std::string& isa() const { return isa_; }
+  const std::string& backend() const { return backend_; }
   /// Ends the tick under way, and the thread: nothing is done any more.
   void stop();
 
@@ -62,7 +62,7 @@ class Worker {
   Playground playground_;
   const Record record_;
   const int threads_;
-  const std::string isa_;
+  const std::string backend_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<Action> posted_;

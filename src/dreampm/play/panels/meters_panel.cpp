@@ -70,7 +70,7 @@ class MetersPanel final : public Panel {
     if (!m.remedy.empty()) ImGui::TextDisabled("what makes steps longer: %s", m.remedy.c_str());
     if (facts.frames_a_second > 0)
       ImGui::Text("a picture takes %.0f ms to draw, as %s", facts.draw_ms, std::string(facts.look).c_str());
-    ImGui::TextDisabled("%d threads, %s", facts.threads, facts.isa.c_str());
+    ImGui::TextDisabled("%d threads, %s", facts.threads, facts.backend.c_str());
     if (!host.notes.empty()) {
       ImGui::Separator();
       for (const Note& note : host.notes) draw_note(note);

@@ -17,7 +17,7 @@ struct DrawingFacts {
   double draw_ms = 0;
   double frames_a_second = 0;  ///< 0: nobody watches
   int threads = 0;
-  std::string isa;
+  std::string backend;  ///< with its instruction set
   std::string_view look;
   std::optional<double> film_seconds;  ///< of the film that is being made of what is drawn
   double film_behind = 0;              ///< s of it that wait for the encoder

@@ -83,7 +83,7 @@ void fit(std::unique_ptr<gl::Framebuffer>& framebuffer, int width, int height) {
 }  // namespace
 
 struct App::Impl {
-  Impl(const Cursor::Post& post, int threads, std::string isa, bool offscreen);
+  Impl(const Cursor::Post& post, int threads, std::string backend, bool offscreen);
   ~Impl();
 
   /// What is seen beside the panels, of both sides while materials are compared, with the legend of
@@ -141,11 +141,11 @@ struct App::Impl {
   int left = 0, bottom = 0;               ///< pixels that the panels take from the picture
 };
 
-App::Impl::Impl(const Cursor::Post& post_, int threads, std::string isa, bool offscreen_)
+App::Impl::Impl(const Cursor::Post& post_, int threads, std::string backend, bool offscreen_)
     : post(post_), cursor([this](const Action& a) { return use_tool(a); }), panels(post_), offscreen(offscreen_) {
   panels.host.pictures = &pictures;
   panels.host.is_film = [this](const std::string& file) { return films.is_in_use(file); };
-  facts.threads = threads, facts.isa = std::move(isa);
+  facts.threads = threads, facts.backend = std::move(backend);
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
@@ -166,8 +166,8 @@ App::Impl::~Impl() {
   ImGui::DestroyContext();
 }
 
-App::App(Cursor::Post post, int threads, std::string isa, bool offscreen)
-    : impl_(std::make_unique<Impl>(post, threads, std::move(isa), offscreen)) {}
+App::App(Cursor::Post post, int threads, std::string backend, bool offscreen)
+    : impl_(std::make_unique<Impl>(post, threads, std::move(backend), offscreen)) {}
 App::~App() = default;
 
 void App::Impl::drop_files(const Frame& under, const std::vector<std::string>& files, double x, double y) {

@@ -31,7 +31,7 @@ struct Input {
 class App {
  public:
   /// `offscreen`: draws where there is no window, for `picture`.
-  App(Cursor::Post post, int threads, std::string isa, bool offscreen = false);
+  App(Cursor::Post post, int threads, std::string backend, bool offscreen = false);
   ~App();
   App(const App&) = delete;
   App& operator=(const App&) = delete;

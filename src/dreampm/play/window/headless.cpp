@@ -30,7 +30,8 @@ constexpr int most_of_a_line = 1000000;
 class Drawer {
  public:
   Drawer(const HeadlessOptions& options, const Playground& playground)
-      : options_(options), app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.isa(), true) {
+      : options_(options),
+        app_([](Action) { return std::uint64_t{0}; }, playground.threads(), playground.backend(), true) {
     app_.show_panels(options.panels);
   }
   /// Into a film where the frame asks for one, and into a picture, where a file is given.

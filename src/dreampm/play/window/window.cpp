@@ -255,7 +255,7 @@ void play_in_window(PlayScene scene, const WindowOptions& options) {
   }
   if (write) write(fmt::format("# dreampm {}\n{}\n", version, Action{"plays", {scene.name}}.text()));
   Worker worker(std::move(scene), options.play, write);
-  App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.isa());
+  App app([&](Action action) { return worker.post(std::move(action)); }, worker.threads(), worker.backend());
   app.choose_size(options.particles.empty());
   if (!options.particles.empty() && options.particles != size_names()[1]) worker.post({"size", {options.particles}});
   show(window, worker, app);
