@@ -133,25 +133,40 @@ endfunction()
 set(DM_TOGETHER ON CACHE STRING
     "ON: several files of a module or test are compiled as one: a whole build is quicker, each change takes longer; TESTS: of tests alone; OFF")
 
-# dm_module(NAME [LIGHT] [TOGETHER n] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that -O1 does.
+# dm_module(NAME [LIGHT] [QUICK] [TOGETHER n] SOURCES a.cpp ... USES module ... LINK target ...). LIGHT: computes so little that
+# -O1 does. QUICK: under sanitizers it is not optimized, for which clang takes a third of the time.
 # TOGETHER: n files are compiled as one, so no two of them may have a name in common.
 function(dm_module name)
-  cmake_parse_arguments(R "LIGHT" "TOGETHER" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(R "LIGHT;QUICK" "TOGETHER" "SOURCES;USES;LINK" ${ARGN})
   add_library(dm_${name} STATIC ${R_SOURCES})
   target_include_directories(dm_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src ${PROJECT_BINARY_DIR}/generated)
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(dm_${name} PUBLIC ${R_USES} PRIVATE dm_flags dm_baseline ${R_LINK})
+  set(together ${DM_TOGETHER})
+  set(headers dm_physics)
   if(R_LIGHT)
     target_compile_options(dm_${name} PRIVATE -O1)
   endif()
-  if(R_TOGETHER AND DM_TOGETHER AND NOT DM_TOGETHER STREQUAL TESTS)
+  if(R_QUICK AND DM_SANITIZE)
+    target_compile_options(dm_${name} PRIVATE -O0)
+    if(DM_TOGETHER)
+      set(together ON)  # what is left of the time is that of headers
+    endif()
+    # They have to be compiled as the module is.
+    get_property(headers GLOBAL PROPERTY DM_QUICK_HEADERS)
+    if(NOT headers)
+      set(headers dm_${name})
+      set_property(GLOBAL PROPERTY DM_QUICK_HEADERS ${headers})
+    endif()
+  endif()
+  if(R_TOGETHER AND together AND NOT together STREQUAL TESTS)
     dm_together(dm_${name} ${R_TOGETHER})
   endif()
   set_target_properties(dm_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  if(name STREQUAL physics)
-    target_precompile_headers(dm_physics PRIVATE ${DM_COMMON_HEADERS})
+  if(headers STREQUAL dm_${name})
+    target_precompile_headers(dm_${name} PRIVATE ${DM_COMMON_HEADERS})
   elseif(NOT name STREQUAL base)  # which spdlog gives macros that fmt looks at
-    target_precompile_headers(dm_${name} REUSE_FROM dm_physics)
+    target_precompile_headers(dm_${name} REUSE_FROM ${headers})
   endif()
 endfunction()
 
@@ -165,20 +180,25 @@ function(dm_listing page file)
   endif()
   file(CONFIGURE OUTPUT ${file} CONTENT "${CMAKE_MATCH_1}" @ONLY)
 endfunction()
-# dm_test(NAME [TOGETHER n] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known to ctest.
-# Built in a hurry: what takes time in a test is the library's. TOGETHER: as above, 0 for all files as one.
+# dm_test(NAME [QUICK] [TOGETHER n] SOURCES a_test.cpp ... USES module ... LINK target ...): a GoogleTest program, each test known
+# to ctest. Built in a hurry: what takes time in a test is the library's. QUICK, TOGETHER: as above,
+# 0 for all files as one.
 function(dm_test name)
-  cmake_parse_arguments(R "" "LABEL;TOGETHER" "SOURCES;USES;LINK" ${ARGN})
+  cmake_parse_arguments(R "QUICK" "LABEL;TOGETHER" "SOURCES;USES;LINK" ${ARGN})
   add_executable(test_${name} ${R_SOURCES})
   list(TRANSFORM R_USES PREPEND dm_)
   target_link_libraries(test_${name} PRIVATE ${R_USES} dm_flags dm_baseline ${R_LINK} GTest::gtest_main GTest::gmock)
   target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_options(test_${name} PRIVATE -O1)
+  set(level -O1)
+  if(R_QUICK AND DM_SANITIZE)
+    set(level -O0)
+  endif()
+  target_compile_options(test_${name} PRIVATE ${level})
   if(DEFINED R_TOGETHER AND DM_TOGETHER)
     dm_together(test_${name} ${R_TOGETHER})
   endif()
-  if(name STREQUAL base)
-    target_precompile_headers(test_base PRIVATE ${DM_COMMON_HEADERS} <gtest/gtest.h> <gmock/gmock.h>)
+  if(name STREQUAL base OR level STREQUAL -O0)
+    target_precompile_headers(test_${name} PRIVATE ${DM_COMMON_HEADERS} <gtest/gtest.h> <gmock/gmock.h>)
   else()
     target_precompile_headers(test_${name} REUSE_FROM test_base)
   endif()

@@ -1,11 +1,10 @@
 // OpenVDB: a level set of each mesh, collider and rigid body, and a grid of velocities, a file a
 // frame. The only file of this module that includes OpenVDB.
-#include <openvdb/openvdb.h>
-
 #include <cmath>
 
 #include "dreampm/export/formats.h"
 #include "dreampm/import/vdb_file.h"
+#include "dreampm/import/vdb_grids.h"
 #include "dreampm/import/vdb_level_set.h"
 #include "dreampm/io/numbered.h"
 

@@ -1,8 +1,8 @@
 // The level set of a mesh as other programs get it. For files that include OpenVDB themselves.
 #pragma once
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 
+#include "dreampm/import/vdb_grids.h"
 #include "dreampm/import/vdb_mesh.h"
 
 namespace dreampm {

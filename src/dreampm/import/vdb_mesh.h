@@ -1,10 +1,9 @@
 // A mesh as OpenVDB's tools take it. For files that include OpenVDB themselves.
 #pragma once
-#include <openvdb/openvdb.h>
-
 #include <vector>
 
 #include "dreampm/geometry/mesh.h"
+#include "dreampm/import/vdb_grids.h"
 
 namespace dreampm {
 

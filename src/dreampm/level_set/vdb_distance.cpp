@@ -1,12 +1,12 @@
 #include "dreampm/level_set/vdb_distance.h"
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
 #include <limits>
 #include <mutex>
 
+#include "dreampm/import/vdb_grids.h"
 #include "dreampm/import/vdb_mesh.h"
 
 namespace dreampm {

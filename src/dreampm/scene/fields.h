@@ -158,9 +158,11 @@ void read_map(Reading& in, const YamlNode& node, const std::string& path, const 
       f.read(in, *value, within(f.key), out);
   }
   for (const std::string& o : others) offered.push_back(o);
-  for (const Entry& e : node.entries)
+  for (const Entry& e : node.entries) {
+    if (in.problems.full()) break;
     if (std::find(known.begin(), known.end(), e.key) == known.end())
       in.problems.error(e.at, unknown_key(node, e, within(e.key), offered));
+  }
   check_alternatives(in.problems, node, path, known);
 }
 

@@ -16,7 +16,7 @@ std::string Problem::text() const {
 void Problems::add(const Place& at, std::string message, bool warning) {
   Problem p{at.file, at.line, at.column, std::move(message), warning};
   // A value behind a YAML alias is read once for each use.
-  if (list_.size() > most || std::find(list_.begin(), list_.end(), p) != list_.end()) return;
+  if (full() || std::find(list_.begin(), list_.end(), p) != list_.end()) return;
   if (list_.size() == most)
     p = {at.file, 0, 0, fmt::format("more than {} problems; the first are listed", most), false};
   if (!p.warning) ++errors_;

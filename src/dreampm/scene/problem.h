@@ -34,6 +34,8 @@ class Problems {
   void error(const Place& at, std::string message) { add(at, std::move(message), false); }
   void warning(const Place& at, std::string message) { add(at, std::move(message), true); }
   int errors() const { return errors_; }
+  /// True if no more is listed, and words for more need not be found.
+  bool full() const { return list_.size() > most; }
   const std::vector<Problem>& list() const { return list_; }
 
  private:

@@ -1,8 +1,7 @@
 #include "dreampm/surface/vdb.h"
 
-#include <openvdb/openvdb.h>
-
 #include "dreampm/import/vdb_file.h"
+#include "dreampm/import/vdb_grids.h"
 #include "dreampm/import/vdb_level_set.h"
 
 namespace dreampm {
