@@ -13,9 +13,4 @@ foreach(source ${sources})
 endforeach()
 string(SHA256 hash "${all}")
 string(SUBSTRING ${hash} 0 16 hash)
-file(CONFIGURE OUTPUT ${OUT} CONTENT "// Generated: see cmake/KernelSources.cmake.
-#pragma once
-namespace dreampm::gpu {
-inline constexpr unsigned long long kernel_sources = 0x${hash};
-}
-")
+configure_file(${ROOT}/src/dreampm/backend/gpu/cuda/kernel_sources.h.in ${OUT} @ONLY)

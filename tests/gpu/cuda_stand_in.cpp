@@ -5,9 +5,9 @@
 #include <string>
 
 #include "dreampm/backend/gpu/cuda/cuda_library.h"
+#include "dreampm/backend/gpu/cuda/kernel_sources.h"
 #include "dreampm/backend/gpu/host_device.h"
 #include "dreampm/backend/gpu/kernels.h"
-#include "dreampm/kernel_sources.h"
 
 namespace dreampm::gpu {
 namespace {

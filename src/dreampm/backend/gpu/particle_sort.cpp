@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t ways = SortInput::neighbors;
 
-/// The threads that a kernel needs for so many items, in blocks.
+/// The blocks of threads that a kernel needs for `items` of one thread each.
 template <class K>
 std::size_t blocks_for(std::size_t items) {
   return (items + K::threads - 1) / K::threads;

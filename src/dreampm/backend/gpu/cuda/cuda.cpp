@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "dreampm/backend/gpu/cuda/cuda_library.h"
+#include "dreampm/backend/gpu/cuda/kernel_sources.h"
 #include "dreampm/backend/gpu/kernels.h"
 #include "dreampm/base/error.h"
-#include "dreampm/kernel_sources.h"
 #include "dreampm/version.h"
 
 namespace dreampm::gpu {

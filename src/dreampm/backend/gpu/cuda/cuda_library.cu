@@ -1,12 +1,12 @@
 // libdreampm_cuda.so: the kernels of gpu/kernels.h, and the calls of the CUDA runtime that gpu/device.h asks for. Built by
 // tools/build_cuda.
 #include "dreampm/backend/gpu/cuda/cuda_library.h"
+#include "dreampm/backend/gpu/cuda/kernel_sources.h"
 
 #include <cuda_runtime.h>
 
 #include "dreampm/backend/gpu/device_block.h"
 #include "dreampm/backend/gpu/kernels.h"
-#include "dreampm/kernel_sources.h"
 
 namespace dreampm::gpu {
 namespace {

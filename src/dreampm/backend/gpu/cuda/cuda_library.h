@@ -11,7 +11,7 @@ namespace dreampm::gpu {
 struct CudaLibrary {
   const char* version;         ///< of DreaMPM, which has to be the same
   unsigned long long kernels;  ///< fingerprint of the list in gpu/kernels.h, which has to be the same
-  unsigned long long sources;  ///< hash of what the kernels are made of (cmake/KernelSources.cmake), likewise
+  unsigned long long sources;  ///< hash of what the kernels are made of (cmake/KernelSources.cmake): the same too
   const char* (*open)(int number, void** device);
   void (*close)(void* device);
   /// Name, compute capability and memory in bytes.
