@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/backend_choice.h"
+#include "bench/bench_backend.h"
 #include "dreampm/math/vec.h"
 
 namespace dreampm {
@@ -19,7 +19,7 @@ struct StepBenchOptions {
   bool droplets = false;              ///< `particles` in drops of 8 that are far apart, instead of a column
   bool large_steps = false;           ///< of the projection, for bench_taps
   int threads = 1;
-  BackendChoice backend;
+  BenchBackend backend;
   int windows = 5;              ///< the result is the median of this number of windows
   double window_seconds = 0.5;  ///< at least this long each
   /// Called after every window with its ns per particle-step: wall clock, and processor time of all

@@ -121,7 +121,7 @@ double spread_of(std::vector<double> values) {
 double Timing::median() const { return median_of(windows); }
 double Timing::cpu_median() const { return median_of(cpu_windows); }
 
-Course::Course(BenchScene scene, const BackendChoice& choice) {
+Course::Course(BenchScene scene, const BenchBackend& choice) {
   Stopwatch backend(make_bench_backend(choice));
   const std::optional<DeviceFacts> device = device_of(choice);
   const auto particles = static_cast<double>(scene.seeds.at(0).size());
@@ -145,7 +145,7 @@ Course::Course(BenchScene scene, const BackendChoice& choice) {
   start_ = std::move(world);
 }
 
-Timing Course::run(const BackendChoice& choice, const Pace& pace) const {
+Timing Course::run(const BenchBackend& choice, const Pace& pace) const {
   Stopwatch backend(make_bench_backend(choice));
   const auto particles = static_cast<double>(start_->particles());
   Timing timing;

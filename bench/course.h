@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/backend_choice.h"
+#include "bench/bench_backend.h"
 #include "bench/scenes.h"
 
 namespace dreampm {
@@ -41,12 +41,12 @@ struct Pace {
 class Course {
  public:
   /// Begins the scene and steps it with all threads that may be used.
-  Course(BenchScene scene, const BackendChoice& choice);
+  Course(BenchScene scene, const BenchBackend& choice);
 
   const World<float>& world() const { return *start_; }
   /// Windows of whole periods from sort to sort, in pieces of a few periods from the start of the
   /// course.
-  Timing run(const BackendChoice& choice, const Pace& pace) const;
+  Timing run(const BenchBackend& choice, const Pace& pace) const;
   /// Memory that the process took for it, seeds apart, over particles [B]: at most, while it warmed
   /// up. 0: not known, or too little to measure.
   double memory_per_particle() const { return memory_; }

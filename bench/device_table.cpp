@@ -42,7 +42,7 @@ constexpr DeviceCase device_cases[] = {
 double gigabytes(double bytes) { return 1e-9 * bytes; }
 
 /// Measures the steps of one case.
-void measure(const DeviceCase& c, const DeviceTableOptions& options, const BackendChoice& choice, BenchRow& row,
+void measure(const DeviceCase& c, const DeviceTableOptions& options, const BenchBackend& choice, BenchRow& row,
              double& per_particle) {
   const Course course(column_scene(*find_material(c.material), c.cells), choice);
   if (course.device_memory_per_particle() > 0) per_particle = course.device_memory_per_particle();
@@ -59,7 +59,7 @@ void measure(const DeviceCase& c, const DeviceTableOptions& options, const Backe
 }  // namespace
 
 std::vector<BenchRow> bench_device_table(const DeviceTableOptions& options) {
-  const BackendChoice choice{options.backend, "auto"};
+  const BenchBackend choice{options.backend, "auto"};
   if (choice.on_host())
     fail_input("--backend {}: it has no device; its table is that without --backend", choice.backend);
   const std::string isa(make_bench_backend(choice)->isa());

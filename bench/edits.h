@@ -11,7 +11,7 @@ struct EditBenchOptions {
   std::int64_t particles = 100000;  ///< about how many
   int faces = 100000;               ///< about how many, of the mesh beside them
   int threads = 1;
-  BackendChoice backend;
+  BenchBackend backend;
   int rounds = 40;  ///< of which the median counts
 };
 

@@ -56,7 +56,7 @@ model::Scene probed(const World<float>& world) {
 
 }  // namespace
 
-FrameCost frame_cost(const Course& course, const BackendChoice& choice, int tries) {
+FrameCost frame_cost(const Course& course, const BenchBackend& choice, int tries) {
   const auto backend = make_bench_backend(choice);
   World<float> world = course.world();
   backend->attach(world);
@@ -102,7 +102,7 @@ FrameCost frame_cost(const Course& course, const BackendChoice& choice, int trie
   return {median_of(plain), median_of(output)};
 }
 
-BenchRow frame_row(const Course& course, const BackendChoice& choice, const std::string& isa) {
+BenchRow frame_row(const Course& course, const BenchBackend& choice, const std::string& isa) {
   // The dragon at full resolution: dx 6 mm, c + v = 49 m/s, cfl 1/2, 24 frames a second.
   constexpr double steps = 49 / (0.5 * 0.006) / 24;
   const FrameCost cost = frame_cost(course, choice, 3);

@@ -12,10 +12,10 @@ namespace dreampm {
 struct FrameCost {
   double step = 0, output = 0;
 };
-FrameCost frame_cost(const Course& course, const BackendChoice& choice, int tries);
+FrameCost frame_cost(const Course& course, const BenchBackend& choice, int tries);
 
 /// The share of a frame that these take where it has as many steps as one of the dragon at full
 /// resolution, with the threads that may be used. `isa`: as rows name it.
-BenchRow frame_row(const Course& course, const BackendChoice& choice, const std::string& isa);
+BenchRow frame_row(const Course& course, const BenchBackend& choice, const std::string& isa);
 
 }  // namespace dreampm

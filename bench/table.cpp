@@ -74,7 +74,7 @@ class Table {
     const auto of = [&](int n) { return std::max(2, n / options_.shrink); };
     return {of(cells.x), of(cells.y), of(cells.z)};
   }
-  static BackendChoice by(const std::string& isa) { return {"cpu", isa}; }
+  static BenchBackend by(const std::string& isa) { return {"cpu", isa}; }
   bool asked(std::string_view isa) const { return options_.isa.empty() || isa == widest_; }
   Pace pace() const { return {options_.windows, options_.window_seconds, {}}; }
   Timing timed(BenchScene scene) const {

@@ -107,7 +107,7 @@ TapText text_of(Tap tap) {
 
 }  // namespace
 
-TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const BackendChoice& choice)
+TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const BenchBackend& choice)
     : tap_(tap), steps_per_piece_(options.large_steps ? large_steps : explicit_steps) {
   BenchScene scene = scene_of(options, tap);
   engine_ = std::make_unique<Engine<float>>(std::move(scene.world), make_bench_backend(choice));
@@ -118,7 +118,7 @@ TappedSteps::TappedSteps(const StepBenchOptions& options, Tap tap, const Backend
   start_ = std::make_unique<const World<float>>(engine_->world());
 }
 
-TappedSteps TappedSteps::without_tap(const BackendChoice& choice) const {
+TappedSteps TappedSteps::without_tap(const BenchBackend& choice) const {
   TappedSteps other;
   other.steps_per_piece_ = steps_per_piece_;
   auto start = std::make_unique<World<float>>(*start_);

@@ -16,9 +16,9 @@ class TappedSteps {
  public:
   /// Water or another material with a tap, moved far enough for all to be warm. With the threads
   /// that may be used.
-  TappedSteps(const StepBenchOptions& options, Tap tap, const BackendChoice& choice);
+  TappedSteps(const StepBenchOptions& options, Tap tap, const BenchBackend& choice);
   /// The same matter, as it moves then, without the tap; of a mesh that turns: that stands still.
-  TappedSteps without_tap(const BackendChoice& choice) const;
+  TappedSteps without_tap(const BenchBackend& choice) const;
 
   std::uint64_t particles() const { return start_->particles(); }
   /// Steps from the start for at least that long. Adds what a particle-step took [ns].

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// --backend of what is measured, and --isa of cpu; `rest` of the text about it.
-void add_backend(CLI::App& verb, BackendChoice& choice, const std::string& rest = {}) {
+void add_backend(CLI::App& verb, BenchBackend& choice, const std::string& rest = {}) {
   verb.add_option("--backend", choice.backend,
                   "which is measured: " + fmt::format("{}", fmt::join(backend_names(), ", ")) + rest)
       ->check(CLI::IsMember(backend_names()))
@@ -100,7 +100,7 @@ void add_step(CLI::App& bench, Action& action) {
 void add_all(CLI::App& bench, Action& action) {
   struct Arguments {
     TableOptions options;
-    BackendChoice backend;
+    BenchBackend backend;
     std::uint64_t largest = DeviceTableOptions{}.largest;
     bool json = false;
   };
@@ -125,7 +125,7 @@ void add_all(CLI::App& bench, Action& action) {
   verb->add_flag("--json", a->json, "print JSON");
   verb->callback([=, &action] {
     action = [=] {
-      const bool cpu = a->backend.backend == BackendChoice{}.backend;
+      const bool cpu = a->backend.backend == BenchBackend{}.backend;
       for (const CLI::Option* option : cpu ? std::vector{largest} : std::vector{isa, shrink})
         if (option->count() > 0)
           fail_input("{}: not with --backend {}; leave it out", option->get_name(), a->backend.backend);

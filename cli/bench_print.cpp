@@ -16,7 +16,7 @@ Json with_machine(const Json& more) {
   return all;
 }
 
-std::string device_text(const BackendChoice& choice) {
+std::string device_text(const BenchBackend& choice) {
   const std::optional<DeviceFacts> device = device_of(choice);
   return device ? device->about : std::string();
 }

@@ -14,7 +14,7 @@ namespace dreampm::cli {
 nlohmann::ordered_json with_machine(const nlohmann::ordered_json& more);
 std::string machine_text();
 /// Returns the line about the device that a backend runs on, or an empty text.
-std::string device_text(const BackendChoice& choice);
+std::string device_text(const BenchBackend& choice);
 
 /// `ceilings`: of the processors that the step was measured on; none of a device.
 void print_step(const StepBenchResult& result, const std::optional<Ceilings>& ceilings, bool json);

@@ -9,7 +9,8 @@
 
 namespace dreampm {
 
-struct BackendChoice {
+/// A backend of the library, by name, and the instruction set.
+struct BenchBackend {
   std::string backend = "cpu";  ///< a name of backend/registry.h
   std::string isa = "auto";     ///< an instruction set, of cpu alone
 
@@ -18,13 +19,13 @@ struct BackendChoice {
 };
 
 /// Throws InputError where an instruction set is asked of another backend than cpu.
-void check_isa(const BackendChoice& choice);
+void check_isa(const BenchBackend& choice);
 
 /// Throws InputError for a backend that is not there or computes in double, and for an instruction
 /// set that is not there or is asked of another backend than cpu.
-std::unique_ptr<Backend<float>> make_bench_backend(const BackendChoice& choice);
+std::unique_ptr<Backend<float>> make_bench_backend(const BenchBackend& choice);
 
 /// The device that it runs on, with the memory that is free there now; none for processors.
-std::optional<DeviceFacts> device_of(const BackendChoice& choice);
+std::optional<DeviceFacts> device_of(const BenchBackend& choice);
 
 }  // namespace dreampm
