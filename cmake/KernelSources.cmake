@@ -2,12 +2,10 @@
 # program that loads it know that they fit.
 #   cmake -DROOT=FOLDER -DOUT=FILE -P cmake/KernelSources.cmake
 cmake_minimum_required(VERSION 3.20)
-file(GLOB_RECURSE sources RELATIVE ${ROOT} ${ROOT}/include/dreampm/*.h ${ROOT}/src/dreampm/math/*.h
-     ${ROOT}/src/dreampm/physics/*.h ${ROOT}/src/dreampm/state/*.h ${ROOT}/src/dreampm/backend/*.h
-     ${ROOT}/src/dreampm/backend/*.cu)
-list(SORT sources)
+set(list_options RELATIVE ${ROOT})
+include(${CMAKE_CURRENT_LIST_DIR}/KernelSourceList.cmake)
 set(all "")
-foreach(source ${sources})
+foreach(source ${kernel_sources})
   file(SHA256 ${ROOT}/${source} hash)
   string(APPEND all "${source} ${hash}\n")
 endforeach()

@@ -113,6 +113,33 @@ TEST(Edits, AStifferLawTakesShorterStepsAtOnce) {
   for (const float j : s.particles("jelly").J) EXPECT_NEAR(j, 1, 0.2);
 }
 
+// Velocities of their own come from the motion of the moment, and go with the transfer.
+TEST(Edits, ATransferThatKeepsVelocitiesComesAndGoes) {
+  const Scene scene = parse_scene(
+      "dreampm: 1\nname: pool\nspace: {max: [0.24, 0.2, 0.16], spacing: 0.02, walls: {x_max: {type: open}}}\n"
+      "time: {fps: 50, frames: 8}\nmaterials: {water: {type: newtonian, transfer: flip, flip_blend: 0}}\n"
+      "bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.12, 0.12, 0.16]}}}}\n",
+      "pool.yaml", {});
+  for (const std::string& backend : backends_here()) {
+    Simulation s(scene, quiet(2, backend));
+    s.advance_to(0.06);
+    const auto kinetic = [&] {
+      double sum = 0;
+      for (const Vec3f& v : s.particles("water").velocity) sum += static_cast<double>(dot(v, v));
+      return sum;
+    };
+    double time = 0.06;
+    for (const double blend : {0.5, 0.0, 0.9}) {
+      s.set_parameter("water", "flip_blend", blend);
+      const double before = kinetic();
+      s.step();
+      EXPECT_NEAR(kinetic(), before, 0.1 * before) << backend << ' ' << blend;
+      s.advance_to(time += 0.02);
+    }
+    for (const float j : s.particles("water").J) EXPECT_NEAR(j, 1, 0.1) << backend;
+  }
+}
+
 TEST(Edits, MatterThatComesInIsCounted) {
   Simulation s(dam_and_jelly(), quiet());
   s.advance_to(0.02);

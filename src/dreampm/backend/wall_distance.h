@@ -16,7 +16,8 @@ DM_FN int first_node(R u) {
   return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
 }
 
-/// The distance [cells] from the wall of `side`, whose nodes lie in `plane`, counted from there too.
+/// The distance [cells] from the wall of `side`, whose nodes lie in `plane`, counted from there
+/// too.
 template <class R>
 DM_FN R distance_from_wall(R u, int plane, int side) {
   return (u + static_cast<R>(kernel_reach - plane)) * static_cast<R>(inward_of(side));

@@ -47,6 +47,16 @@ Vec3d momentum_of(const ParticleSet<R>& set, const typename Motion<R>::Set& moti
   return static_cast<Vec3d>(motion.velocity[p]) * set.mass;
 }
 
+/// Gives a set velocities of its own, or takes them away, as its transfer now wants it.
+template <class R>
+void set_own_velocity(ParticleSet<R>& set, const typename Motion<R>::Set& motion) {
+  for (std::size_t a = 0; a < 3; ++a) {
+    set.own_velocity[a].resize(set.has_own_velocity() ? set.size() : 0);
+    for (std::size_t p = 0; p < set.own_velocity[a].size(); ++p)
+      set.own_velocity[a][p] = motion.velocity[p][static_cast<int>(a)];
+  }
+}
+
 }  // namespace
 
 Scene Simulation::Impl::checked(model::Scene next) const {
@@ -101,8 +111,14 @@ void Simulation::set_parameter(std::string_view material, std::string_view key, 
     fail_input("set_parameter: materials.{}.{} is {}: must be a finite number", material, key, value);
   impl_->state.scene = impl_->edited([&](model::Scene& next) { set_value(next.materials[m], key, value); });
   std::vector<std::string> notes;
-  impl_->with_engine([&](auto& engine) {
-    use_material(engine.world().sets[m], scene().model().materials[m], engine.world(), impl_->state.expected, notes);
+  impl_->with_engine([&]<class R>(Engine<R>& engine) {
+    ParticleSet<R>& set = engine.world().sets[m];
+    const bool kept = set.has_own_velocity();
+    if (is_transfer_key(key)) engine.download(MatterFields::all);
+    use_material(set, scene().model().materials[m], engine.world(), impl_->state.expected, notes);
+    if (set.has_own_velocity() == kept) return;
+    set_own_velocity(set, engine.motion().sets[m]);
+    engine.upload(MatterFields::state);
   });
   impl_->state.edited = true;
 }

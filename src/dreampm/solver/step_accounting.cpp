@@ -53,8 +53,10 @@ void StepAccounting<R>::sub_cycled(double heat) {
 
 template <class R>
 void StepAccounting<R>::before_sort() {
-  const bool may_leave =
-      std::any_of(world_.walls.begin(), world_.walls.end(), [](const Wall& w) { return w.type == WallType::open; });
+  // The walls of periodic axes are open, and nothing leaves there.
+  bool may_leave = false;
+  for (std::size_t side = 0; side < 6; ++side)
+    may_leave = may_leave || (world_.walls[side].type == WallType::open && !world_.periodic[side / 2]);
   if (!may_leave && world_.sinks.empty()) return;
   before_sort_ = {may_leave ? backend_.grid_momentum(world_, NodesHold::velocities) : ImpulseSum{}, world_.left, 0, {}};
   add_taken(world_, before_sort_->taken, before_sort_->took_along);

@@ -174,7 +174,7 @@ auto fields_of(G& grid) {
       entry<column>("mixture", mixture, [](const auto& w) { return w.needs_mixture(); }),
       entry<sparse(column)>("before0", velocity_old[0], [](const auto& w) { return w.keeps_velocities(0); }),
       entry<sparse(column)>("before1", velocity_old[1], [](const auto& w) { return w.keeps_velocities(1); }),
-      // A sort comes after the grid's update, which is the last that reads them.
+      // A sort within a step comes after the grid's update, which is the last that reads them.
       entry<sparse(state)>("stress0", stress[0], [](const auto& w) { return w.viscous_stages > 0; }),
       entry<sparse(state)>("stress1", stress[1],
                            [](const auto& w) { return w.viscous_stages > 0 && w.needs_solid_field(); })};

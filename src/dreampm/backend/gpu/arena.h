@@ -75,7 +75,7 @@ struct ScatterBounds {
 struct ScatterUnits {
   float momentum, mass;
 };
-/// The largest power of two whose product with `most` is at most 2^30; `most` >= 0.
+/// The largest power of two whose product with `most` is below 2^30; `most` >= 0.
 DM_FN float counts_per_unit(float most) { return exp2_int(29.0f - exponent_of(max(most, 1e-25f))); }
 /// What one count is: the reciprocal of such a power of two, exactly.
 DM_FN double per_count(float counts) { return static_cast<double>(exp2_int(-exponent_of(counts))); }
@@ -104,7 +104,7 @@ DM_FN ScatterUnits field_units(const BlockLoad& load, int field, const ScatterBo
 /// Units of the mixture: of volumes, in place of a momentum, and of viscosity times mass.
 DM_FN ScatterUnits mixture_units(const BlockLoad& load, const ScatterBounds& bounds) {
   return {counts_per_unit(load.volume * max(bounds.volume_ratio, 1.0f)),
-          counts_per_unit(load.mass[0] * bounds.viscosity)};
+          counts_per_unit(min(load.mass[0], bounds.mass) * bounds.viscosity)};
 }
 
 }  // namespace dreampm::gpu

@@ -17,11 +17,15 @@ struct ArenaSums {
   std::int32_t x[arena_room], y[arena_room], z[arena_room], m[arena_room];
 };
 
+/// The numbers of a node that a particle adds to, a bit each: others are zero, and adding zeros
+/// would cost as much.
+enum Components : unsigned { x_part = 1, y_part = 2, z_part = 4, mass_part = 8, vector_part = 7, all_parts = 15 };
+
 /// Adds what a particle gives to a field: q and slopes of `scatter_terms`, and `mass` alike. The
 /// sum over its nodes is exactly that of the particle: the middle node, whose weight is the
 /// largest, gets what rounding left over. Without that, small weights would round down more often
 /// than up.
-template <class Block>
+template <class Block, unsigned parts = all_parts>
 DM_FN void scatter_counts(const Stencil<float>& s, const Vec3<float>& q, const Vec3<float> (&slope)[3], float mass,
                           const ScatterUnits& units, ArenaSums& sums) {
   using Quad = Node<float>;
@@ -29,19 +33,36 @@ DM_FN void scatter_counts(const Stencil<float>& s, const Vec3<float>& q, const V
   Quad slopes[3];
   for (int a = 0; a < 3; ++a)
     slopes[a] = {slope[a].x * units.momentum, slope[a].y * units.momentum, slope[a].z * units.momentum, 0};
+  const auto add = [&sums](int at, const NodeCounts& n) {
+    if constexpr (parts & x_part) Block::add(sums.x[at], n.x);
+    if constexpr (parts & y_part) Block::add(sums.y[at], n.y);
+    if constexpr (parts & z_part) Block::add(sums.z[at], n.z);
+    if constexpr (parts & mass_part) Block::add(sums.m[at], n.m);
+  };
   const int first = place_in_arena(s.node(0) + 1, s.node(1) + 1, s.node(2) + 1);
   NodeCounts left{Block::nearest(whole.x), Block::nearest(whole.y), Block::nearest(whole.z), Block::nearest(whole.m)};
   scatter_terms(s, whole, slopes, [&](int i, int j, int k, const Quad& term, float w) {
     if (i == 1 && j == 1 && k == 1) return;
-    const int at = first + place_in_arena(i, j, k);
     const NodeCounts n{Block::nearest(term.x * w), Block::nearest(term.y * w), Block::nearest(term.z * w),
                        Block::nearest(term.m * w)};
-    Block::add(sums.x[at], n.x), Block::add(sums.y[at], n.y), Block::add(sums.z[at], n.z), Block::add(sums.m[at], n.m);
+    add(first + place_in_arena(i, j, k), n);
     left = left + -n;
   });
-  const int at = first + place_in_arena(1, 1, 1);
-  Block::add(sums.x[at], left.x), Block::add(sums.y[at], left.y), Block::add(sums.z[at], left.z);
-  Block::add(sums.m[at], left.m);
+  add(first + place_in_arena(1, 1, 1), left);
+}
+
+/// Calls body(particle) for thread `t`'s share of a block's particles. Particles side by side in
+/// memory lie in one cell: threads that work together take such as lie far apart, so that they do
+/// not all wait to add to the same nodes.
+template <int threads, class Body>
+DM_FN void each_particle(const std::uint32_t* block_start, int block, int t, const Body& body) {
+  constexpr std::uint32_t together = 32;
+  const std::uint32_t begin = block_start[block], count = block_start[block + 1] - begin,
+                      stride = (count + together - 1) / together;
+  for (auto r = static_cast<std::uint32_t>(t); r < together * stride; r += threads) {
+    const std::uint32_t p = r % together * stride + r / together;
+    if (p < count) body(begin + p);
+  }
 }
 
 /// The largest that a particle adds to a node of its own over its weight there and its mass [m/s].
@@ -101,13 +122,23 @@ DM_FN Written write(int t, int b, const ArenaSums& sums, const ArenaOutput& to) 
     const int at = ArenaNode(n).place();
     NodeCounts& node = to.counts[std::int64_t{b} * arena_nodes + n];
     NodeCounts count{sums.x[at], sums.y[at], sums.z[at], sums.m[at]};
-    all.counts += static_cast<std::uint32_t>(count.m);
+    // The own count too: with what is there it may run over unseen.
+    const auto own = static_cast<std::uint32_t>(count.m);
+    all.counts += own;
+    if (own > all.most) all.most = own;
     if (!to.first) count = count + node;
     node = count;
     const auto mass = static_cast<std::uint32_t>(count.m);
     if (mass > all.most) all.most = mass;
   }
   return all;
+}
+
+/// The same for a set without particles there: zeros where it is the first to write.
+template <int threads>
+DM_FN void write_zeros(int t, int b, const ArenaOutput& to) {
+  if (!to.counts || !to.first) return;
+  for (int n = t; n < arena_nodes; n += threads) to.counts[std::int64_t{b} * arena_nodes + n] = {0, 0, 0, 0};
 }
 
 }  // namespace dreampm::gpu

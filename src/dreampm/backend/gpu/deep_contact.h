@@ -47,11 +47,11 @@ struct MeetDeep {
     for (std::uint32_t g = at.begin; g < at.end; ++g) {
       const DeepNodes group = groups[g];
       block.each_thread([&](int t) {
+        const std::uint32_t d = group.begin + static_cast<std::uint32_t>(t);
         shared.given[t] = ImpulseTerms<float>::none();
-        for (std::uint32_t d = group.begin; d < group.end; ++d)
-          if (nodes[d].node == t)
-            shared.given[t] =
-                meet(nodes[d], colliders[group.collider], in.grid.field[0][std::int64_t{at.block} * block_nodes + t]);
+        if (d < group.end)
+          shared.given[t] = meet(nodes[d], colliders[group.collider],
+                                 in.grid.field[0][std::int64_t{at.block} * block_nodes + nodes[d].node]);
       });
       add_up_threads<threads>(block, shared.given);
       block.each_thread([&](int t) {

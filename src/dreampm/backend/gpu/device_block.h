@@ -9,7 +9,11 @@
 #define DM_KERNEL __attribute__((global))
 #define DM_SHARED __attribute__((shared))
 #define DM_DEVICE __attribute__((device)) __attribute__((always_inline)) inline
+#ifdef __HIP__
+#define DM_BOUNDS(threads, blocks) __attribute__((amdgpu_flat_work_group_size(threads, threads)))
+#else
 #define DM_BOUNDS(threads, blocks) __attribute__((launch_bounds(threads, blocks)))
+#endif
 #else
 #define DM_KERNEL __global__
 #define DM_SHARED __shared__
@@ -35,7 +39,11 @@ DM_DEVICE std::int32_t count_in_memory(std::int32_t& counter) {
 DM_DEVICE void lower_in_memory(std::int32_t& to, std::int32_t value) {
   __atomic_fetch_min(&to, value, __ATOMIC_RELAXED);
 }
-DM_DEVICE std::int32_t to_nearest(float value) { return static_cast<std::int32_t>(__builtin_rintf(value)); }
+DM_DEVICE std::int32_t to_nearest(float value) {
+  if (!(value == value)) return 0;
+  // The largest and the least float within the range.
+  return static_cast<std::int32_t>(__builtin_rintf(min(max(value, -2147483648.0f), 2147483520.0f)));
+}
 #elif defined(__clang__)
 DM_DEVICE int thread_number() { return __nvvm_read_ptx_sreg_tid_x(); }
 DM_DEVICE int block_number() { return __nvvm_read_ptx_sreg_ctaid_x(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "dreampm/backend/gpu/set_memory.h"
 #include "dreampm/backend/gpu/viscous_stages.h"
 #include "dreampm/backend/scatter_particles.h"
+#include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
 
 namespace dreampm {
@@ -40,12 +42,15 @@ class Gpu final : public Backend<float> {
   void attach(const World<float>& world) override {
     obstacles_.forget();
     home_ = MatterFields::all;
+    whole_ = true;
+    const Change change(*this);
     gpu::check_room(*device_, world);
     refresh(world);
     upload_particles(world);
   }
 
   void sort(World<float>& world) override {
+    const Change change(*this);
     if (gpu::ParticleSort::takes(world)) {
       nodes_to_device(world);
       sort_(world, memory_);
@@ -62,11 +67,12 @@ class Gpu final : public Backend<float> {
   void colliders_moved(const World<float>& world) override {
     obstacles_.prepare(world);
     update_.colliders_moved(world, obstacles_);
-    if (gpu::GridVisit::takes(world, obstacles_)) visit_.colliders_moved(world, obstacles_);
+    visit_.colliders_moved(world, obstacles_);
     upload_obstacles(world);
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    const Change change(*this);
     bring_home(world, MatterFields::all);
     insert(world, set, seeds);
     gpu::check_room(*device_, world);
@@ -76,6 +82,7 @@ class Gpu final : public Backend<float> {
   }
 
   GridStats grid_update(World<float>& world, double dt) override {
+    check_whole();
     if (gpu::GridVisit::takes(world, obstacles_)) {
       nodes_to_device(world);
       home_ = without(home_, MatterFields::nodes);
@@ -131,12 +138,15 @@ class Gpu final : public Backend<float> {
 
   void scatter_particles(World<float>& world, const Motion<float>& motion) override {
     bring_home(world, MatterFields::particles);
-    change_nodes_at_home(world);
+    // All nodes are written anew.
+    home_ = home_ | MatterFields::nodes;
+    nodes_there_ = false;
     dreampm::scatter_particles(world, motion, obstacles_);
   }
 
   void download(World<float>& world, Motion<float>&, MatterFields fields) override { bring_home(world, fields); }
   void upload(const World<float>& world, const Motion<float>&, MatterFields fields) override {
+    const Change change(*this);
     memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       if (includes(fields, MatterFields::position))
@@ -160,6 +170,23 @@ class Gpu final : public Backend<float> {
 
  private:
   // ---- where the matter is
+
+  /// What an exception would leave half done: the lists of the World and of the device differ then,
+  /// and nothing but attach() helps.
+  class Change {
+   public:
+    explicit Change(Gpu& gpu) : gpu_(gpu), thrown_(std::uncaught_exceptions()) { gpu.check_whole(); }
+    Change(const Change&) = delete;
+    Change& operator=(const Change&) = delete;
+    ~Change() { gpu_.whole_ = std::uncaught_exceptions() == thrown_; }
+
+   private:
+    Gpu& gpu_;
+    int thrown_;
+  };
+  void check_whole() const {
+    if (!whole_) fail_run("{}: an earlier failure left the matter there half changed", device_->about());
+  }
 
   /// Copies what `fields` name to the World, where its arrays are not current.
   void bring_home(World<float>& world, MatterFields fields) {
@@ -281,6 +308,7 @@ class Gpu final : public Backend<float> {
   /// nodes are. Its particles always are.
   MatterFields home_ = MatterFields::all;
   bool nodes_there_ = false;
+  bool whole_ = true;  ///< see Change
   World<float> copy_;  ///< for at_home()
 };
 

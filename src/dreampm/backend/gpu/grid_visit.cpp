@@ -13,6 +13,8 @@ namespace {
 
 /// Nodes lighter than this part of a particle do not count for the largest speed.
 constexpr double light_part = 1e-6;
+/// Nor do those of this part of the heaviest node, some 50 counts of mass.
+constexpr double light_counts = 1e-7;
 
 /// The sides whose walls a block has nodes on or behind, a bit each.
 std::uint32_t walls_reached(const World<float>& world, const Vec3i& first) {
@@ -251,7 +253,7 @@ VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt
   in.grid = memory.grid_pointers();
   double lightest = 1e30;
   for (const ParticleSet<float>& set : world.sets) lightest = std::min(lightest, set.mass);
-  in.light = static_cast<float>(light_part * lightest);
+  in.light = static_cast<float>(std::max(light_part * lightest, light_counts * world.scatter_bounds[1]));
   for (std::size_t f = 0; f < 2; ++f) {
     const double share = in.grid.velocity_old[f] ? world.kept_share(f) : 0;
     in.unweigh[f] = static_cast<float>(1 / share);

@@ -59,11 +59,10 @@ struct FoldImages {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 2 && in.grid.field[f]; ++f) {
       block.each_thread([&](int t) {
         const ImageLayer* const layer = layers.of(block.index(), t);
-        shared.given[t] = layer && in.grid.field[f] && layer->folds[f] ? fold(*layer, f, t % plane_nodes)
-                                                                       : ImpulseTerms<float>::none();
+        shared.given[t] = layer && layer->folds[f] ? fold(*layer, f, t % plane_nodes) : ImpulseTerms<float>::none();
       });
       layers.give(block, shared.given, in, true, f == 0);
     }
@@ -101,11 +100,10 @@ struct ReflectImages {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    for (int f = 0; f < 2; ++f) {
+    for (int f = 0; f < 2 && in.grid.field[f]; ++f) {
       block.each_thread([&](int t) {
         const ImageLayer* const layer = layers.of(block.index(), t);
-        shared.given[t] = layer && in.grid.field[f] && layer->folds[f] ? reflect(*layer, f, t % plane_nodes)
-                                                                       : ImpulseTerms<float>::none();
+        shared.given[t] = layer && layer->folds[f] ? reflect(*layer, f, t % plane_nodes) : ImpulseTerms<float>::none();
       });
       layers.give(block, shared.given, in, false, false);
     }

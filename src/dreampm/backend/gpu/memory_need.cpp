@@ -10,17 +10,23 @@ std::size_t bytes_needed(const World<float>& world) {
   std::size_t bytes = 0, fields = 0;
   for (const ParticleSet<float>& set : world.sets) {
     const std::size_t columns = 3 + set.state.size() + (set.has_own_velocity() ? 3 : 0);
-    // Columns and ids twice, and two numbers of a sort.
-    bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + 2 * sizeof(std::uint32_t));
+    // Columns and ids twice, two numbers of a sort, and the motion of a frame: velocity, its
+    // gradient, energy and volume.
+    constexpr std::size_t sort = 2 * sizeof(std::uint32_t), motion = (3 + 9 + 2) * sizeof(float);
+    const std::size_t distance = world.colliders.empty() ? 0 : 4 * sizeof(float);
+    bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + sort + motion + distance);
   }
   visit_nodes(world.grid, [&](const auto& field, const auto&) { fields += field.needed(world); });
+  // Stages of viscosity, where any may come: momenta, the velocities before and their change.
+  const bool stages = world.settings.sub_cycles && world.holds_liquid(0);
   constexpr std::size_t nodes = block_nodes * sizeof(Node<float>), cells = block_nodes * sizeof(std::uint32_t);
   constexpr std::size_t tables = 512;  // of a block, about
   bytes += world.particle_blocks.size() *
            (fields * arena_nodes * sizeof(NodeCounts) +
             world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) + sizeof(BlockSums) + tables);
   // One more field is on its way in a sort; colliders have two of their own.
-  bytes += world.grid.blocks.size() * ((fields + 1 + (world.colliders.empty() ? 0 : 2)) * nodes + tables);
+  bytes +=
+      world.grid.blocks.size() * ((fields + 1 + (world.colliders.empty() ? 0 : 2) + (stages ? 4 : 0)) * nodes + tables);
   return bytes + bytes / 8;  // Buffers have room to grow
 }
 

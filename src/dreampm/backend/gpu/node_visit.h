@@ -54,7 +54,7 @@ struct GapPointers {
 struct VisitBlock {
   Vec3i first;           ///< its first node
   std::uint32_t walls;   ///< the sides whose walls it has nodes on or behind, a bit each
-  bool waits;            ///< whether images change its nodes before contact can act
+  bool waits;            ///< whether images or surfaces may change its nodes before the walls act
   std::int32_t entries;  ///< six times its number among the blocks at walls; -1 of others
 };
 
@@ -175,8 +175,8 @@ struct BlockBoundaries {
   }
 };
 
-/// Momentum to velocity; contact too, where no image comes first. A block of threads takes a block
-/// of the grid.
+/// Momentum to velocity; contact with walls too, where the block does not wait. A block of threads
+/// takes a block of the grid.
 struct BeginVisit {
   static constexpr int threads = block_nodes;
   using Shared = BlockBoundaries::Shared;
@@ -234,7 +234,7 @@ struct BeginVisit {
   }
 };
 
-/// Contact of the blocks that waited for images.
+/// Contact with walls of the blocks that waited.
 struct FinishVisit {
   static constexpr int threads = block_nodes;
   using Shared = BlockBoundaries::Shared;

@@ -35,6 +35,9 @@ void ParticlePasses::prepare(std::size_t particle_blocks) {
 PassStats ParticlePasses::g2p2g(World<float>& world, double dt, double dt_next, bool looks, bool thin,
                                 GridFields<float>& next) {
   const PassStep step{world, next, dt, dt_next, looks, thin};
+  PassOutput none{};
+  for (SetMemory& set : memory_.sets)
+    if (looks) set.output_to(none);  // as long as the set, also where there is no block to pass over
   ScatterBounds bounds = assumed_bounds(world, world.node_speed);
   PassStats total;
   for (;;) {

@@ -83,20 +83,21 @@ struct Pass {
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = in.some ? static_cast<int>(in.some[block.index()]) : block.index();
+    if (in.block_start[b] == in.block_start[b + 1]) return nothing_there(block, b);
     block.each_thread([&](int t) {
       copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.arena.nodes);
       clear<threads>(t, shared.arena.field);
       if constexpr (!plain) {
-        clear<threads>(t, shared.arena.others.velocity_old), clear<threads>(t, shared.arena.others.stress);
-        clear<threads>(t, shared.arena.others.mixture);
+        auto& others = shared.arena.others;
+        if (out.velocity_old.counts) clear<threads>(t, others.velocity_old);
+        if (out.stress.counts) clear<threads>(t, others.stress);
+        if (out.mixture.counts) clear<threads>(t, others.mixture);
       }
     });
     typename Block::template PerThread<ParticleSums> found;
     block.each_thread([&](int t) {
       found[t] = ParticleSums::none();
-      const std::uint32_t end = in.block_start[b + 1];
-      for (std::uint32_t p = in.block_start[b] + static_cast<std::uint32_t>(t); p < end; p += threads)
-        advance<Block>(b, p, shared, found[t]);
+      each_particle<threads>(in.block_start, b, t, [&](std::uint32_t p) { advance<Block>(b, p, shared, found[t]); });
     });
     block.each_thread([&](int t) {
       const Written written = write<threads>(t, b, shared.arena.field, out.field);
@@ -121,6 +122,19 @@ struct Pass {
   }
 
  private:
+  /// A block without particles of this set.
+  template <class Block>
+  DM_FN void nothing_there(Block& block, int b) const {
+    block.each_thread([&](int t) {
+      write_zeros<threads>(t, b, out.field);
+      if constexpr (!plain) {
+        write_zeros<threads>(t, b, out.velocity_old), write_zeros<threads>(t, b, out.stress);
+        write_zeros<threads>(t, b, out.mixture);
+      }
+      if (t == 0) out.sums[b] = BlockSums::none();
+    });
+  }
+
   template <class Block>
   DM_FN void advance(int b, std::uint32_t p, Shared& shared, ParticleSums& found) const {
     Vec3<float> u{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]};
@@ -271,7 +285,7 @@ struct Pass {
         Vec3<float> slope[3];
         stress_slopes(set, response.tau, set.dt_next, slope);
         found.scattered.speed = max(scattered_speed({}, slope, set.mass), found.scattered.speed);
-        scatter_counts<Block>(stencil, {}, slope, 0, units, others.stress);
+        scatter_counts<Block, vector_part>(stencil, {}, slope, 0, units, others.stress);
       }
       if (out.mixture.counts) scatter_mixture<Block>(b, stencil, j, response, set, others.mixture, found);
     }
@@ -287,9 +301,13 @@ struct Pass {
     const float blocked = M::info.liquid ? 0.0f : cells * j;
     found.scattered.viscosity = max(viscosity, found.scattered.viscosity);
     if (!M::info.liquid) found.scattered.volume_ratio = max(j, found.scattered.volume_ratio);
-    const Vec3<float> none[3]{};
-    scatter_counts<Block>(stencil, {blocked, field == 0 ? cells : 0.0f, field == 1 ? cells : 0.0f}, none,
-                          viscosity * set.mass, mixture_units(in.loads[b], bounds), sums);
+    const Vec3<float> shares{blocked, field == 0 ? cells : 0.0f, field == 1 ? cells : 0.0f}, none[3]{};
+    const auto give = [&]<unsigned parts>() {
+      scatter_counts<Block, parts>(stencil, shares, none, viscosity * set.mass, mixture_units(in.loads[b], bounds),
+                                   sums);
+    };
+    constexpr unsigned own = M::info.liquid ? mass_part : x_part;
+    field == 0 ? give.template operator()<own | y_part>() : give.template operator()<own | z_part>();
   }
 
   DM_FN void write_motion(std::uint32_t p, const G2PResult<float>& g, const P2GTerms<float>& s, float j,

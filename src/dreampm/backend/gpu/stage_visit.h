@@ -20,8 +20,8 @@ struct StageInput {
   SourceTerms* driven;   ///< by block of the grid; `work`: of gravity and stress
 };
 
-/// The forces of a stage; contact too, where no image comes first. A block of threads takes a block
-/// of the grid.
+/// The forces of a stage; contact with walls too, where the block does not wait. A block of threads
+/// takes a block of the grid.
 struct BeginStage {
   static constexpr int threads = block_nodes;
   using Shared = BlockBoundaries::Shared;

@@ -28,6 +28,13 @@ struct ViscousPass {
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = block.index();
+    if (in.block_start[b] == in.block_start[b + 1]) {
+      block.each_thread([&](int t) {
+        write_zeros<threads>(t, b, out);
+        if (t == 0 && out.first) speed[b] = 0;
+      });
+      return;
+    }
     block.each_thread([&](int t) {
       copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.nodes);
       clear<threads>(t, shared.field);
@@ -35,8 +42,7 @@ struct ViscousPass {
     block.each_thread([&](int t) {
       float fastest = 0;
       const ScatterUnits units = field_units(in.loads[b], field, bounds);
-      const std::uint32_t end = in.block_start[b + 1];
-      for (std::uint32_t p = in.block_start[b] + static_cast<std::uint32_t>(t); p < end; p += threads) {
+      each_particle<threads>(in.block_start, b, t, [&](std::uint32_t p) {
         const Stencil<float> s =
             make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
         const auto found = gather<Vec3<float>, no_bends>(s, velocity_rows(s, shared.nodes));
@@ -45,8 +51,8 @@ struct ViscousPass {
         Vec3<float> slope[3];
         viscous_slopes<M, float>(law, step, state, found.first_moment, slope);
         fastest = max(scattered_speed({}, slope, step.mass), fastest);
-        scatter_counts<Block>(s, {}, slope, 0, units, shared.field);
-      }
+        scatter_counts<Block, vector_part>(s, {}, slope, 0, units, shared.field);
+      });
       shared.speed[t] = fastest;
     });
     block.each_thread([&](int t) {

@@ -13,7 +13,8 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
   for (int number = 1; number <= world.viscous_stages; ++number) {
     passes.find_viscous_forces(world, dt, next);
     const RklFactors factors(world.viscous_stages, number);
-    const VisitInput in = visit.input(world, memory, dt, factors.gain);
+    VisitInput in = visit.input(world, memory, dt, factors.gain);
+    in.damped = nullptr;  // damping acted before the stages
     const StageInput stage{static_cast<float>(factors.kept),
                            static_cast<float>(factors.gain),
                            factors.part,

@@ -65,11 +65,10 @@ const Loaded& loaded() {
   const std::vector<std::string> at = places();
   const auto there = known.find(at);
   if (there != known.end()) return there->second;
-  Loaded found;
-  for (const std::string& file : at) {
-    found = load(file);
-    if (found.library) break;
-  }
+  // Of failures the first one tells: a file that was found comes before what the system looks for.
+  Loaded found = load(at.front());
+  for (std::size_t i = 1; !found.library && i < at.size(); ++i)
+    if (const Loaded other = load(at[i]); other.library) found = other;
   return known.emplace(at, found).first->second;
 }
 
