@@ -193,7 +193,8 @@ void ContactGaps::measure_wall(const NearBlock& near_block, int side, const Part
   const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const R *x = set.u[static_cast<std::size_t>(a)].data(), *y = set.u[static_cast<std::size_t>(b)].data(),
           *z = set.u[static_cast<std::size_t>(c)].data();
-  const auto distance = [&](R at) { return distance_from_wall(at, plane, side); };
+  const WallDistance<R> wall(plane, side);
+  const auto distance = [wall](R at) { return wall.of(at); };
   if (!(distance(inward > R(0) ? bounds.low[a] : bounds.high[a]) < R(kernel_reach))) return;
   // The nodes that a block reaches are two blocks wide. Their minima are shared with others once.
   // Neighbors in memory often have the same node: two tables, so that one does not wait for the

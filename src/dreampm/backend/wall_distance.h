@@ -16,11 +16,15 @@ DM_FN int first_node(R u) {
   return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
 }
 
-/// The distance [cells] from the wall of `side`, whose nodes lie in `plane`, counted from there
-/// too.
+/// The distance [cells] from a wall of the box.
 template <class R>
-DM_FN R distance_from_wall(R u, int plane, int side) {
-  return (u + static_cast<R>(kernel_reach - plane)) * static_cast<R>(inward_of(side));
-}
+struct WallDistance {
+  R shift, inward;
+
+  /// The wall of `side`, whose nodes lie in `plane`, counted from there too.
+  DM_FN WallDistance(int plane, int side)
+      : shift(static_cast<R>(kernel_reach - plane)), inward(static_cast<R>(inward_of(side))) {}
+  DM_FN R of(R u) const { return (u + shift) * inward; }
+};
 
 }  // namespace dreampm

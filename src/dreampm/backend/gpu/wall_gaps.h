@@ -63,7 +63,7 @@ struct MeasureGaps {
   template <class Block>
   DM_FN void measure(const NearWalls& at, int side, std::uint32_t p) const {
     const int a = axis_of(side);
-    const float away = distance_from_wall(u[a][p], int{at.plane[side]}, side);
+    const float away = WallDistance<float>(int{at.plane[side]}, side).of(u[a][p]);
     if (!(away < static_cast<float>(kernel_reach))) return;
     Vec3i node;
     for (int b = 0; b < 3; ++b) node[b] = b == a ? int{at.plane[side]} : first_node(u[b][p]);
