@@ -27,6 +27,13 @@ struct Case {
   const char* time = "";   ///< more keys of `time`
   bool staged = false;     ///< whether viscosity acts in stages
 };
+constexpr const char* dam_and_colliders = R"(
+materials: {water: {type: newtonian}}
+bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.16]}}}}
+colliders:
+  ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, type: stick}
+  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
+)";
 constexpr Case cases[] = {
     {"honey, whose viscosity is sub-cycled, from a tap into a pool", R"(
 materials: {honey: {type: newtonian, viscosity: 1000, density: 1400, bulk_modulus: 1.0e5}}
@@ -72,21 +79,8 @@ colliders:
   ball: {shape: {sphere: {radius: 0.04}, center: [0.1, 0.04, 0.08]}, type: separate, friction: 0.4}
   plate: {shape: {box: {size: [0.02, 0.14, 0.16]}, center: [0.2, 0.07, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
 )"},
-    {"water over a ball, in front of a block that moves", R"(
-materials: {water: {type: newtonian}}
-bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.16]}}}}
-colliders:
-  ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, type: stick}
-  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
-)"},
-    {"the same by contact at nodes alone", R"(
-materials: {water: {type: newtonian}}
-bodies: {dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.16]}}}}
-colliders:
-  ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, type: stick}
-  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
-)",
-     6, 0.03, "", ", surface_contact: false"},
+    {"water over a ball, in front of a block that moves", dam_and_colliders},
+    {"the same by contact at nodes alone", dam_and_colliders, 6, 0.03, "", ", surface_contact: false"},
     {"a box that floats", R"(
 materials: {water: {type: newtonian}}
 bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}}
