@@ -65,7 +65,8 @@ const Loaded& loaded() {
   const std::vector<std::string> at = places();
   const auto there = known.find(at);
   if (there != known.end()) return there->second;
-  // Of failures the first is reported: a file that was found comes before what the system looks for.
+  // Of failures the first is reported: a file that was found comes before what the system looks
+  // for.
   Loaded found = load(at.front());
   for (std::size_t i = 1; !found.library && i < at.size(); ++i)
     if (const Loaded other = load(at[i]); other.library) found = other;
