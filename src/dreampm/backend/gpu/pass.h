@@ -47,15 +47,16 @@ struct PassOutput {
 
 /// `relaxes`: whether this step relaxes the volume of liquids. `plain`: the set keeps no
 /// velocities and gives nothing to a mixture, there is no stage of viscosity, and no collider is
-/// near the blocks that it visits. Whether somebody
-/// looks at the motion does not decide: compilers of device code may round two kernels differently.
+/// near the blocks that it visits. Whether somebody looks at the motion does not decide: compilers
+/// of device code may round two kernels differently.
 template <class M, bool relaxes, bool plain>
 struct Pass {
   using Material = M;
   static constexpr int threads = 128;
-  /// Four blocks to a multiprocessor are 128 registers a thread: no plain kernel spills then.
-  static constexpr int resident = plain ? 4 : 1;
   static constexpr int columns = state_columns<M>;
+  /// Four blocks to a multiprocessor are 128 registers a thread: few enough to hide waiting, and no
+  /// plain kernel spills, but for those that relax a law with a tensor of state.
+  static constexpr int resident = !plain ? 1 : relaxes && columns > 4 ? 3 : 4;
   static_assert(columns <= most_state_columns, "a material has more columns of state than ParticleColumns holds");
 
   struct RareSums {
