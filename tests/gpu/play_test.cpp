@@ -40,14 +40,7 @@ TEST(PlayByCard, HandsDoWhatTheyDo) {
 TEST(PlayByCard, UndoRedoAndRewindGoToTheVeryBits) {
   Playground p(small_scene(), by_card());
   play(p, {"steps 30"});
-  const std::uint64_t before = p.hash();
-  play(p, {"erase 0.05 0.05 0.1 0.05"});
-  const std::uint64_t after = p.hash();
-  ASSERT_NE(before, after);
-  play(p, {"undo"});
-  EXPECT_EQ(p.hash(), before);
-  play(p, {"redo"});
-  EXPECT_EQ(p.hash(), after);
+  expect_exact_undo_of_erasing(p);
   play(p, {"steps 20", "undo", "steps 20"});
   const std::uint64_t later = p.hash();
   play(p, {"seek 0.01"});

@@ -60,6 +60,18 @@ inline void play(Playground& p, const std::vector<std::string>& lines) {
   }
 }
 
+/// An erasing is undone and done again to the very bits.
+inline void expect_exact_undo_of_erasing(Playground& p) {
+  const std::uint64_t before = p.hash();
+  play(p, {"erase 0.05 0.05 0.1 0.05"});
+  const std::uint64_t after = p.hash();
+  ASSERT_NE(before, after);
+  play(p, {"undo"});
+  EXPECT_EQ(p.hash(), before);
+  play(p, {"redo"});
+  EXPECT_EQ(p.hash(), after);
+}
+
 /// Whether every particle is a number, and within the tank.
 inline bool finite(const Frame& frame) {
   for (const MatterFrame& m : frame.matter)

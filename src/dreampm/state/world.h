@@ -176,12 +176,14 @@ struct World {
   /// True if the field's matter has several densities and a law in it asks for the density around a
   /// particle, which the masses of nodes then do not show.
   bool measures_by_volume(std::size_t field) const;
-  /// Liquids need to know how much of a node's kernel solids or colliders take, and walls how
-  /// viscous they are.
-  bool needs_mixture() const {
-    return needs_solid_field() || (holds_liquid(0) && (!colliders.empty() || has_skin_friction())) ||
-           measures_by_volume(0) || measures_by_volume(1);
+  /// True if anything asks what matter there is at a node: contact of liquids with solids, walls
+  /// how viscous a liquid is, a law its density among others.
+  bool mixes_matter() const {
+    return needs_solid_field() || (holds_liquid(0) && has_skin_friction()) || measures_by_volume(0) ||
+           measures_by_volume(1);
   }
+  /// Liquids need to know how much of a node's kernel colliders take, too.
+  bool needs_mixture() const { return mixes_matter() || (holds_liquid(0) && !colliders.empty()); }
   bool has_skin_friction() const {
     for (const Wall& w : walls)
       if (w.skin_friction) return true;

@@ -130,14 +130,7 @@ TEST(Playground, AMaterialComesToWhatWasAskedForByAndBy) {
 TEST(Playground, UndoAndRedoGoToTheVeryBits) {
   Playground p(small_scene(), quiet_options());
   play(p, {"frames 5"});
-  const std::uint64_t before = p.hash();
-  play(p, {"erase 0.05 0.05 0.1 0.05"});
-  const std::uint64_t after = p.hash();
-  ASSERT_NE(before, after);
-  p.act({"undo", {}});
-  EXPECT_EQ(p.hash(), before);
-  p.act({"redo", {}});
-  EXPECT_EQ(p.hash(), after);
+  expect_exact_undo_of_erasing(p);
   play(p, {"undo", "frames 3", "set material.water.viscosity 3", "frames 20", "undo"});
   EXPECT_NEAR(value_of(p, "material.water.viscosity"), 1e-3, 1e-5);
   EXPECT_THAT(refusal(p, "redo"), "") << "one edit is ahead";

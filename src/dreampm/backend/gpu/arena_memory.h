@@ -51,20 +51,6 @@ DM_FN void scatter_counts(const Stencil<float>& s, const Vec3<float>& q, const V
   add(first + place_in_arena(1, 1, 1), left);
 }
 
-/// Calls body(particle) for thread `t`'s share of a block's particles. Particles side by side in
-/// memory lie in one cell: threads that work together take such as lie far apart, so that they do
-/// not all wait to add to the same nodes.
-template <int threads, class Body>
-DM_FN void each_particle(const std::uint32_t* block_start, int block, int t, const Body& body) {
-  constexpr std::uint32_t together = 32;
-  const std::uint32_t begin = block_start[block], count = block_start[block + 1] - begin,
-                      stride = (count + together - 1) / together;
-  for (auto r = static_cast<std::uint32_t>(t); r < together * stride; r += threads) {
-    const std::uint32_t p = r % together * stride + r / together;
-    if (p < count) body(begin + p);
-  }
-}
-
 /// The largest that a particle adds to a node of its own over its weight there and its mass [m/s].
 DM_FN float scattered_speed(const Vec3<float>& q, const Vec3<float> (&slope)[3], float mass) {
   float most = 0;

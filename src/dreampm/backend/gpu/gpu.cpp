@@ -78,6 +78,7 @@ class Gpu final : public Backend<float> {
     gpu::check_room(*device_, world);
     refresh(world);
     upload_particles(world);
+    forget_heaviest(world);
     return scatter_seeds(world, set, seeds, obstacles_);
   }
 
@@ -141,6 +142,7 @@ class Gpu final : public Backend<float> {
     // All nodes are written anew.
     home_ = home_ | MatterFields::nodes;
     nodes_there_ = false;
+    forget_heaviest(world);
     dreampm::scatter_particles(world, motion, obstacles_);
   }
 
@@ -223,6 +225,8 @@ class Gpu final : public Backend<float> {
     home_ = home_ | MatterFields::particles;
     nodes_there_ = false;
   }
+  /// The host gave matter to the nodes: the next pass counts by what its blocks hold.
+  static void forget_heaviest(World<float>& world) { world.scatter_bounds[1] = 0; }
   /// Brings the nodes home, where they will change.
   void change_nodes_at_home(World<float>& world) {
     bring_home(world, MatterFields::nodes);

@@ -185,7 +185,7 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
   total.colliders.resize(world.colliders.size());
   if (gapped_[0] || gapped_[1]) measure_gaps(world, memory);
   const VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
-  launch(BeginVisit{in}, blocks_.size());
+  launch(*device_, BeginVisit{in}, blocks_.size());
   contact(in, world, memory, obstacles, host, dt, true, total);
   add_results(in, false, total);
   return total;
@@ -198,13 +198,14 @@ void GridVisit::contact(const VisitInput& in, World<float>& world, Memory& memor
     return folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes;
   };
   for (int axis = 2; folds_ && axis >= 0; --axis)
-    launch(FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
+    launch(*device_, FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
   launch(
+      *device_,
       MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
       deep_blocks_.size());
-  launch(FinishVisit{in, waiting_.data()}, waiting_.size());
+  launch(*device_, FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
-    launch(ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
+    launch(*device_, ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
 }
 
 void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -214,7 +215,7 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
   surface_blocks_.upload(blocks);
   copies_.resize(blocks.size() * block_nodes), copies_home_.resize(copies_.size());
   Node<float>* const grid = memory.nodes[nodes].data();
-  launch(CopyBlocks{surface_blocks_.data(), grid, copies_.data(), false}, blocks.size());
+  launch(*device_, CopyBlocks{surface_blocks_.data(), grid, copies_.data(), false}, blocks.size());
   copies_.download(copies_home_);
   const auto copy = [&](auto&& one) {
     for (std::size_t i = 0; i < blocks.size(); ++i)
@@ -224,16 +225,17 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
   host.meet_surfaces(world, obstacles, dt, bodies, found);
   copy([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
   copies_.upload(copies_home_);
-  launch(CopyBlocks{surface_blocks_.data(), grid, copies_.data(), true}, blocks.size());
+  launch(*device_, CopyBlocks{surface_blocks_.data(), grid, copies_.data(), true}, blocks.size());
 }
 
 void GridVisit::measure_gaps(const World<float>& world, Memory& memory) {
-  launch(ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
+  launch(*device_, ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const ParticleSet<float>& set = world.sets[s];
     if (set.liquid || set.size() == 0) continue;
     const SetMemory& m = memory.sets[s];
-    launch(MeasureGaps{near_.data(),
+    launch(*device_,
+           MeasureGaps{near_.data(),
                        {m.now.u[0].data(), m.now.u[1].data(), m.now.u[2].data()},
                        m.block_start.data(),
                        memory.stencil_blocks.data(),
@@ -242,7 +244,8 @@ void GridVisit::measure_gaps(const World<float>& world, Memory& memory) {
                        static_cast<float>(ColliderContact::contact_gap * set.spacing() / world.dx)},
            near_.size());
   }
-  launch(FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,
+  launch(*device_,
+         FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,
                       gap_.data()},
          (planes_.size() + FindWallGaps::at_once - 1) / FindWallGaps::at_once);
 }
@@ -279,10 +282,10 @@ void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total
   parts_.resize((blocks + walls + drag + damping) * sizeof(GridTerms));
   auto* const grid = reinterpret_cast<GridTerms*>(parts_.data());
   auto* const given = reinterpret_cast<SourceTerms*>(grid + blocks);
-  launch(AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
-  launch(AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
-  launch(AddUp<SourceTerms>{dragged_.data(), wall_ranges_.data(), given + walls}, drag);
-  launch(AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls + drag}, damping);
+  launch(*device_, AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
+  launch(*device_, AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
+  launch(*device_, AddUp<SourceTerms>{dragged_.data(), wall_ranges_.data(), given + walls}, drag);
+  launch(*device_, AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls + drag}, damping);
   home_.resize(parts_.size());
   parts_.download(home_);
   const auto part = [&]<class T>(std::size_t i, T) {
@@ -315,7 +318,7 @@ void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total
 void GridVisit::add_image_mass(const World<float>& world, Memory& memory, double dt) {
   if (layers_.size() == 0 || !measures_density(world, dt)) return;
   for (int axis = 0; axis < 3; ++axis)
-    launch(AddImageMass{memory.grid_pointers(), layers(axis)}, blocks_of(layers(axis)));
+    launch(*device_, AddImageMass{memory.grid_pointers(), layers(axis)}, blocks_of(layers(axis)));
 }
 
 }  // namespace dreampm::gpu

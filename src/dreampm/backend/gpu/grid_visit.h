@@ -50,10 +50,6 @@ class GridVisit {
                      double dt, bool bodies, GridStats& found);
   void measure_gaps(const World<float>& world, Memory& memory);
   LayersInput layers(int axis) const;
-  template <class K>
-  void launch(const K& kernel, std::size_t blocks) {
-    dreampm::gpu::launch(*device_, kernel, blocks);
-  }
 
   Device* device_;
   bool folds_ = false, gapped_[2] = {};

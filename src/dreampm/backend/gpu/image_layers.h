@@ -32,18 +32,26 @@ struct LayersInput {
     at[(axis + 1) % 3] = static_cast<float>(n / block_width), at[(axis + 2) % 3] = static_cast<float>(n % block_width);
     return at;
   }
-  /// Adds up what the threads of each layer gave; the first of them adds it to the layer's entry.
-  /// `fresh`: what is there does not count.
-  template <class Block>
-  DM_FN void give(Block& block, ImpulseTerms<float>* given, const VisitInput& in, bool inner, bool fresh) const {
-    add_up_threads<threads, plane_nodes>(block, given);
-    block.each_thread([&](int t) {
-      const ImageLayer* const layer = of(block.index(), t);
-      if (t % plane_nodes != 0 || !layer) return;
-      SourceTerms sum = fresh ? SourceTerms::none() : in.given[layer->entry];
-      sum.add(in.places.about_origin(given[t], inner ? layer->inner_node : layer->ghost_node));
-      in.given[layer->entry] = sum;
-    });
+  /// Calls body(layer, field, node of its plane) for the fields that layers fold, one after the
+  /// other, and adds what it returns to the layer's entry in VisitInput::given, about the origin
+  /// from the plane that `first` is the place of. `fresh`: what is there does not count.
+  template <class Block, class Body>
+  DM_FN void each_folded(const VisitInput& in, Block& block, ImpulseTerms<float>* given, Vec3i ImageLayer::* first,
+                         bool fresh, const Body& body) const {
+    for (int f = 0; f < 2 && in.grid.field[f]; ++f) {
+      block.each_thread([&](int t) {
+        const ImageLayer* const layer = of(block.index(), t);
+        given[t] = layer && layer->folds[f] ? body(*layer, f, t % plane_nodes) : ImpulseTerms<float>::none();
+      });
+      add_up_threads<threads, plane_nodes>(block, given);
+      block.each_thread([&](int t) {
+        const ImageLayer* const layer = of(block.index(), t);
+        if (t % plane_nodes != 0 || !layer) return;
+        SourceTerms sum = fresh && f == 0 ? SourceTerms::none() : in.given[layer->entry];
+        sum.add(in.places.about_origin(given[t], layer->*first));
+        in.given[layer->entry] = sum;
+      });
+    }
   }
 };
 
@@ -59,13 +67,8 @@ struct FoldImages {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    for (int f = 0; f < 2 && in.grid.field[f]; ++f) {
-      block.each_thread([&](int t) {
-        const ImageLayer* const layer = layers.of(block.index(), t);
-        shared.given[t] = layer && layer->folds[f] ? fold(*layer, f, t % plane_nodes) : ImpulseTerms<float>::none();
-      });
-      layers.give(block, shared.given, in, true, f == 0);
-    }
+    layers.each_folded(in, block, shared.given, &ImageLayer::inner_node, true,
+                       [&](const ImageLayer& layer, int f, int n) { return fold(layer, f, n); });
   }
 
  private:
@@ -100,13 +103,8 @@ struct ReflectImages {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    for (int f = 0; f < 2 && in.grid.field[f]; ++f) {
-      block.each_thread([&](int t) {
-        const ImageLayer* const layer = layers.of(block.index(), t);
-        shared.given[t] = layer && layer->folds[f] ? reflect(*layer, f, t % plane_nodes) : ImpulseTerms<float>::none();
-      });
-      layers.give(block, shared.given, in, false, false);
-    }
+    layers.each_folded(in, block, shared.given, &ImageLayer::ghost_node, false,
+                       [&](const ImageLayer& layer, int f, int n) { return reflect(layer, f, n); });
   }
 
  private:

@@ -17,12 +17,6 @@ ScatterBounds assumed_bounds(const World<float>& world, double speed) {
                   static_cast<float>(std::max(viscosity, world.viscosity))});
 }
 
-/// True if anything asks what matter there is at a node; colliders give their share alone.
-bool matter_counts_in_mixture(const World<float>& world) {
-  return world.needs_solid_field() || world.has_skin_friction() || world.measures_by_volume(0) ||
-         world.measures_by_volume(1);
-}
-
 }  // namespace
 
 void ParticlePasses::prepare(std::size_t particle_blocks) {
@@ -35,9 +29,8 @@ void ParticlePasses::prepare(std::size_t particle_blocks) {
 PassStats ParticlePasses::g2p2g(World<float>& world, double dt, double dt_next, bool looks, bool thin,
                                 GridFields<float>& next) {
   const PassStep step{world, next, dt, dt_next, looks, thin};
-  PassOutput none{};
   for (SetMemory& set : memory_.sets)
-    if (looks) set.output_to(none);  // as long as the set, also where there is no block to pass over
+    if (looks) set.fit_motion();
   ScatterBounds bounds = assumed_bounds(world, world.node_speed);
   PassStats total;
   for (;;) {
@@ -93,7 +86,8 @@ ScatterBounds ParticlePasses::pass(const PassStep& step, const ScatterBounds& bo
   memory_.block_sums.resize(blocks_);
   for (std::size_t s = 0; parts > 0 && s < world.sets.size(); ++s) {
     launch_pass(step, s, bounds);
-    launch(AddUp<BlockSums>{memory_.block_sums.data(), memory_.block_ranges.data(), memory_.totals.data() + s * parts},
+    launch(*device_,
+           AddUp<BlockSums>{memory_.block_sums.data(), memory_.block_ranges.data(), memory_.totals.data() + s * parts},
            parts);
   }
   totals_.assign(world.sets.size() * parts, BlockSums::none());
@@ -121,7 +115,7 @@ void ParticlePasses::launch_pass(const PassStep& pass, std::size_t s, const Scat
   out.field = arena(of_field(nodes, field), pass.next);
   if (keeps) out.velocity_old = arena(of_field(old_nodes, field), pass.next);
   if (step.sub_cycled) out.stress = arena(of_field(stress_nodes, field), pass.next);
-  if (matter_counts_in_mixture(world)) out.mixture = arena(mixture_share, pass.next);
+  if (world.mixes_matter()) out.mixture = arena(mixture_share, pass.next);
   out.sums = memory_.block_sums.data();
   if (pass.looks) memory.output_to(out);
   const bool plain = !keeps && !step.sub_cycled && !out.mixture.counts;
@@ -136,7 +130,7 @@ void ParticlePasses::launch_pass(const PassStep& pass, std::size_t s, const Scat
                                         static_cast<int>(field),
                                         world.measures_by_volume(field)};
       if (some) kernel.in.some = some->data();
-      launch(kernel, some ? some->size() : blocks_);
+      launch(*device_, kernel, some ? some->size() : blocks_);
     };
     const auto all = [&]<bool relaxes>() {
       if (!plain) return visit.template operator()<relaxes, false>(nullptr);
@@ -154,7 +148,8 @@ void ParticlePasses::sum_arenas(std::size_t target, const ScatterBounds& bounds,
                                 Buffer<Node<float>>& to) {
   const std::size_t size = host_field(next, target).size();
   to.resize(size);
-  launch(SumArenas{written_[target] ? memory_.arenas[target].data() : nullptr, memory_.sources.first.data(),
+  launch(*device_,
+         SumArenas{written_[target] ? memory_.arenas[target].data() : nullptr, memory_.sources.first.data(),
                    memory_.sources.arena.data(), memory_.sources.corner.data(), memory_.loads.data(),
                    target == mixture_share ? memory_.base.data() : nullptr, to.data(), bounds, unit_field(target)},
          size / block_nodes);
@@ -166,10 +161,9 @@ void ParticlePasses::download_motion(const World<float>& world, Motion<float>& m
 }
 
 void ParticlePasses::find_viscous_forces(World<float>& world, double dt, GridFields<float>& next) {
-  // World::node_speed is that of the step before, and no state. The mass of nodes is not known
-  // where matter came in since the last pass: what the blocks hold bounds it.
+  // World::node_speed is that of the step before, and no state. The particles lie where they were
+  // when they gave their masses to the nodes: so the heaviest of these is known.
   ScatterBounds bounds = assumed_bounds(world, 0);
-  bounds.mass = 1e20f;
   for (;;) {
     written_ = {};
     const float speed = launch_viscous(world, dt, bounds, next);
@@ -190,7 +184,8 @@ float ParticlePasses::launch_viscous(World<float>& world, double dt, const Scatt
       if constexpr (Viscous<M>) {
         const std::size_t field = world.field_of(set);
         const ArenaOutput out = arena(of_field(nodes, field), next);
-        launch(ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
+        launch(*device_,
+               ViscousPass<M>{M::template Law<float>::from(set.values), set_step(world, set, dt, dt), bounds,
                               input_of(world, s, false), out, memory_.block_speeds.data(), static_cast<int>(field)},
                blocks_);
         memory_.block_speeds.download(speeds_);
@@ -203,7 +198,7 @@ float ParticlePasses::launch_viscous(World<float>& world, double dt, const Scatt
 double ParticlePasses::fastest_particle(World<float>& world) {
   memory_.block_speeds.resize(blocks_);
   for (std::size_t s = 0; s < world.sets.size(); ++s)
-    launch(SpeedPass{input_of(world, s, false), memory_.block_speeds.data(), s == 0}, blocks_);
+    launch(*device_, SpeedPass{input_of(world, s, false), memory_.block_speeds.data(), s == 0}, blocks_);
   speeds_.resize(blocks_);
   memory_.block_speeds.download(speeds_);
   float fastest2 = 0;

@@ -42,10 +42,6 @@ class ParticlePasses {
   void launch_pass(const PassStep& step, std::size_t set, const ScatterBounds& bounds);
   void sum_arenas(std::size_t target, const ScatterBounds& bounds, GridFields<float>& next, Buffer<Node<float>>& to);
   float launch_viscous(World<float>& world, double dt, const ScatterBounds& bounds, GridFields<float>& next);
-  template <class K>
-  void launch(const K& kernel, std::size_t blocks) {
-    gpu::launch(*device_, kernel, blocks);
-  }
 
   Device* device_;
   Memory& memory_;

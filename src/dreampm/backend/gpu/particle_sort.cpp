@@ -29,11 +29,6 @@ bool ParticleSort::takes(const World<float>& world) {
          std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
 }
 
-template <class K>
-void ParticleSort::launch(const K& kernel, std::size_t blocks) {
-  gpu::launch(*device_, kernel, blocks);
-}
-
 void ParticleSort::operator()(World<float>& world, Memory& memory) {
   count_moves(world, memory);
   plan_.find_blocks(world);
@@ -58,7 +53,7 @@ void ParticleSort::count_moves(World<float>& world, Memory& memory) {
   while (sets_.size() < sets) sets_.emplace_back(*device_);
   moves_.resize(sets * blocks * ways);
   for (std::size_t s = 0; s < sets; ++s)
-    launch(CountMoves{input(memory.sets[s]), moves_.data() + s * blocks * ways}, blocks);
+    launch(*device_, CountMoves{input(memory.sets[s]), moves_.data() + s * blocks * ways}, blocks);
   resize_for_overwrite(counted_, moves_.size());
   moves_.download(counted_);
   parallel_for(blocks, 64, [&](std::size_t b) {
@@ -98,9 +93,10 @@ void ParticleSort::find_cells(World<float>& world, Memory& memory) {
     SetMemory& set = memory.sets[s];
     room.counts.resize(cells), room.start.resize(cells), room.number.resize(set.now.u[0].size());
     set.next_block_start.upload(plan_.moves(s).start);
-    launch(ClearCounts{room.counts.data(), static_cast<std::int64_t>(cells)}, blocks_for<ClearCounts>(cells));
-    launch(CountCells{input(set), {targets_.data()}, room.counts.data(), room.number.data()}, old);
-    launch(StartCells{room.counts.data(), set.next_block_start.data(), room.start.data(), cells_.data(), s == 0},
+    launch(*device_, ClearCounts{room.counts.data(), static_cast<std::int64_t>(cells)}, blocks_for<ClearCounts>(cells));
+    launch(*device_, CountCells{input(set), {targets_.data()}, room.counts.data(), room.number.data()}, old);
+    launch(*device_,
+           StartCells{room.counts.data(), set.next_block_start.data(), room.start.data(), cells_.data(), s == 0},
            blocks);
   }
   resize_for_overwrite(halves_, cells_.size());
@@ -117,11 +113,13 @@ void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memo
   room.from.resize(size);
   memory.next.fit(memory.now);
   memory.next_id.resize(size);
-  launch(FillPlaces{input(memory), {targets_.data()}, room.start.data(), room.number.data(), room.from.data()},
+  launch(*device_,
+         FillPlaces{input(memory), {targets_.data()}, room.start.data(), room.number.data(), room.from.data()},
          plan_.old_blocks().size());
-  launch(SortPlaces{room.start.data(), memory.next_block_start.data(), room.from.data()}, blocks);
+  launch(*device_, SortPlaces{room.start.data(), memory.next_block_start.data(), room.from.data()}, blocks);
   const bool own = set.has_own_velocity();
-  launch(MoveParticles{room.from.data(), static_cast<std::uint32_t>(size),
+  launch(*device_,
+         MoveParticles{room.from.data(), static_cast<std::uint32_t>(size),
                        static_cast<std::uint32_t>(memory.now.state.size()), memory.now.pointers(own),
                        memory.next.pointers(own), memory.id.data(), memory.next_id.data()},
          blocks_for<MoveParticles>(size));
@@ -145,7 +143,7 @@ void ParticleSort::carry_nodes(World<float>& world, Memory& memory) {
     if constexpr (F::use.carried) {
       Buffer<Node<float>>& there = memory.nodes[target_of(world.grid, nodes)];
       carried_.resize(field.needed(world) ? blocks * block_nodes : 0);
-      if (carried_.size() > 0) launch(CarryNodes{before_.data(), there.data(), carried_.data()}, blocks);
+      if (carried_.size() > 0) launch(*device_, CarryNodes{before_.data(), there.data(), carried_.data()}, blocks);
       std::swap(there, carried_);
       resize_for_overwrite(nodes, there.size());
     }

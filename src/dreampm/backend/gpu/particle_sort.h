@@ -31,8 +31,6 @@ class ParticleSort {
   void find_cells(World<float>& world, Memory& memory);
   void move(World<float>& world, std::size_t set, SetMemory& memory);
   void carry_nodes(World<float>& world, Memory& memory);
-  template <class K>
-  void launch(const K& kernel, std::size_t blocks);
 
   Device* device_;
   RegroupPlan<float> plan_;

@@ -4,6 +4,7 @@
 #include "dreampm/backend/gpu/add_up.h"
 #include "dreampm/backend/gpu/arena_memory.h"
 #include "dreampm/backend/gpu/block.h"
+#include "dreampm/backend/gpu/block_particles.h"
 #include "dreampm/backend/gpu/pass_sums.h"
 #include "dreampm/backend/pass_limits.h"
 #include "dreampm/physics/divergence.h"
@@ -98,7 +99,8 @@ struct Pass {
     typename Block::template PerThread<ParticleSums> found;
     block.each_thread([&](int t) {
       found[t] = ParticleSums::none();
-      each_particle<threads>(in.block_start, b, t, [&](std::uint32_t p) { advance<Block>(b, p, shared, found[t]); });
+      each_particle_apart<threads>(in.block_start, static_cast<std::uint32_t>(b), t,
+                                   [&](std::uint32_t p) { advance<Block>(b, p, shared, found[t]); });
     });
     block.each_thread([&](int t) {
       const Written written = write<threads>(t, b, shared.arena.field, out.field);

@@ -158,11 +158,15 @@ class SetMemory {
     for (std::size_t a = 0; a < 3; ++a) now.own_velocity[a].download(set.own_velocity[a]);
   }
 
-  /// Makes a pass write its motion.
-  void output_to(PassOutput& out) {
+  /// Makes room for the motion of a pass.
+  void fit_motion() {
     const std::size_t n = now.u[0].size();
     velocity_.resize(n), gradient_.resize(n), energy_.resize(n), volume_ratio_.resize(n);
-    out.velocity = n > 0 ? &velocity_.data()->x : nullptr, out.gradient = n > 0 ? gradient_.data()->m : nullptr;
+  }
+  /// Makes a pass write its motion there.
+  void output_to(PassOutput& out) const {
+    const bool any = energy_.size() > 0;
+    out.velocity = any ? &velocity_.data()->x : nullptr, out.gradient = any ? gradient_.data()->m : nullptr;
     out.energy = energy_.data(), out.volume_ratio = volume_ratio_.data();
   }
   void download_motion(Motion<float>::Set& to) const {

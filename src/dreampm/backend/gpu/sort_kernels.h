@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "dreampm/backend/gpu/block.h"
+#include "dreampm/backend/gpu/block_particles.h"
 #include "dreampm/backend/gpu/pass.h"
 #include "dreampm/state/particle_move.h"
 
@@ -19,12 +20,6 @@ struct SortInput {
 
   DM_FN Vec3<float> place(std::uint32_t p) const { return {u[0][p], u[1][p], u[2][p]}; }
   DM_FN int way(const Vec3<float>& at) const { return alike[neighbor_of(at)]; }
-  /// Calls body(particle) for thread `t`'s share of a block's particles.
-  template <int threads, class Body>
-  DM_FN void each(int block, int t, const Body& body) const {
-    const std::uint32_t end = block_start[block + 1];
-    for (std::uint32_t p = block_start[block] + static_cast<std::uint32_t>(t); p < end; p += threads) body(p);
-  }
 };
 
 /// Counts the particles of each block that move to each of the 27 around it.
@@ -43,7 +38,8 @@ struct CountMoves {
       if (t < SortInput::neighbors) shared.counts[t] = 0;
     });
     block.each_thread([&](int t) {
-      in.each<threads>(b, t, [&](std::uint32_t p) { Block::add(shared.counts[in.way(in.place(p))], 1); });
+      each_particle<threads>(in.block_start, static_cast<std::uint32_t>(b), t,
+                             [&](std::uint32_t p) { Block::add(shared.counts[in.way(in.place(p))], 1); });
     });
     block.each_thread([&](int t) {
       if (t < SortInput::neighbors) counts[std::int64_t{b} * SortInput::neighbors + t] = shared.counts[t];
@@ -55,11 +51,15 @@ struct CountMoves {
 struct SortTargets {
   const std::int32_t* block;
 
-  /// The number of a particle's cell among those of all new blocks, in their order; -1 if it
-  /// leaves.
-  DM_FN std::int64_t cell(const SortInput& in, int old_block, const Vec3<float>& at) const {
-    const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + in.way(at)];
-    return to < 0 ? -1 : std::int64_t{to} * block_nodes + turn_of(at);
+  /// Calls body(particle, cell) for thread `t`'s share of the particles of an old block that stay
+  /// in the world. `cell`: its number among those of all new blocks, in their order.
+  template <int threads, class Body>
+  DM_FN void each(const SortInput& in, int old_block, int t, const Body& body) const {
+    each_particle<threads>(in.block_start, static_cast<std::uint32_t>(old_block), t, [&](std::uint32_t p) {
+      const Vec3<float> at = in.place(p);
+      const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + in.way(at)];
+      if (to >= 0) body(p, std::int64_t{to} * block_nodes + turn_of(at));
+    });
   }
 };
 
@@ -90,12 +90,9 @@ struct CountCells {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    const int b = block.index();
     block.each_thread([&](int t) {
-      in.each<threads>(b, t, [&](std::uint32_t p) {
-        const std::int64_t cell = targets.cell(in, b, in.place(p));
-        if (cell >= 0) number[p] = Block::count(counts[cell]);
-      });
+      targets.each<threads>(in, block.index(), t,
+                            [&](std::uint32_t p, std::int64_t cell) { number[p] = Block::count(counts[cell]); });
     });
   }
 };
@@ -141,11 +138,9 @@ struct FillPlaces {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    const int b = block.index();
     block.each_thread([&](int t) {
-      in.each<threads>(b, t, [&](std::uint32_t p) {
-        const std::int64_t cell = targets.cell(in, b, in.place(p));
-        if (cell >= 0) from[start[cell] + static_cast<std::uint32_t>(number[p])] = p;
+      targets.each<threads>(in, block.index(), t, [&](std::uint32_t p, std::int64_t cell) {
+        from[start[cell] + static_cast<std::uint32_t>(number[p])] = p;
       });
     });
   }

@@ -42,7 +42,7 @@ struct ViscousPass {
     block.each_thread([&](int t) {
       float fastest = 0;
       const ScatterUnits units = field_units(in.loads[b], field, bounds);
-      each_particle<threads>(in.block_start, b, t, [&](std::uint32_t p) {
+      each_particle_apart<threads>(in.block_start, static_cast<std::uint32_t>(b), t, [&](std::uint32_t p) {
         const Stencil<float> s =
             make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
         const auto found = gather<Vec3<float>, no_bends>(s, velocity_rows(s, shared.nodes));
@@ -83,13 +83,12 @@ struct SpeedPass {
     block.each_thread([&](int t) { copy_nodes<threads>(t, in.stencil_blocks + 8 * b, in.field, shared.nodes); });
     block.each_thread([&](int t) {
       float most = 0;
-      const std::uint32_t end = in.block_start[b + 1];
-      for (std::uint32_t p = in.block_start[b] + static_cast<std::uint32_t>(t); p < end; p += threads) {
+      each_particle<threads>(in.block_start, static_cast<std::uint32_t>(b), t, [&](std::uint32_t p) {
         const Stencil<float> s =
             make_stencil(Vec3<float>{in.particles.u[0][p], in.particles.u[1][p], in.particles.u[2][p]});
         const Vec3<float> v = gather_value<Vec3<float>>(s, velocity_rows(s, shared.nodes));
         most = max(dot(v, v), most);
-      }
+      });
       shared.speed2[t] = most;
     });
     block.each_thread([&](int t) {

@@ -26,11 +26,11 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
                            change_.data(),
                            in.step.skin ? visit.dragged() : nullptr,
                            driven_.data()};
-    launch(BeginStage{in, stage}, blocks);
+    launch(*device_, BeginStage{in, stage}, blocks);
     GridStats stats;
     stats.colliders.resize(world.colliders.size());
     visit.contact(in, world, memory, obstacles, host, dt, false, stats);
-    launch(EndStage{in, stage}, blocks);
+    launch(*device_, EndStage{in, stage}, blocks);
     visit.add_results(in, in.step.skin, stats);
     sums_.add(std::move(stats), driven_work(visit), factors.kept);
   }
@@ -41,7 +41,7 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
 double ViscousStages::driven_work(const GridVisit& visit) {
   const Buffer<Range>& ranges = visit.block_ranges();
   driven_parts_.resize(ranges.size());
-  launch(AddUp<SourceTerms>{driven_.data(), ranges.data(), driven_parts_.data()}, ranges.size());
+  launch(*device_, AddUp<SourceTerms>{driven_.data(), ranges.data(), driven_parts_.data()}, ranges.size());
   parts_.resize(ranges.size());
   driven_parts_.download(parts_);
   double work = 0;

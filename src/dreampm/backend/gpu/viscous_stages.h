@@ -17,10 +17,6 @@ class ViscousStages {
 
  private:
   double driven_work(const GridVisit& visit);
-  template <class K>
-  void launch(const K& kernel, std::size_t blocks) {
-    gpu::launch(*device_, kernel, blocks);
-  }
 
   Device* device_;
   Buffer<Node<float>> old_, change_;

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "dreampm/backend/gpu/block.h"
+#include "dreampm/backend/gpu/block_particles.h"
 #include "dreampm/backend/node_terms.h"
 #include "dreampm/backend/wall_distance.h"
 
@@ -52,10 +53,10 @@ struct MeasureGaps {
   DM_FN void operator()(Block& block, Shared&) const {
     const NearWalls at = near[block.index()];
     block.each_thread([&](int t) {
-      const std::uint32_t end = block_start[at.block + 1];
-      for (std::uint32_t p = block_start[at.block] + static_cast<std::uint32_t>(t); p < end; p += threads)
+      each_particle<threads>(block_start, at.block, t, [&](std::uint32_t p) {
         for (int side = 0; side < 6; ++side)
           if (at.plane[side] >= 0) measure<Block>(at, side, p);
+      });
     });
   }
 

@@ -1,0 +1,30 @@
+// How the threads of a block share the particles of a block.
+#pragma once
+#include <cstdint>
+
+#include "dreampm/math/scalar.h"
+
+namespace dreampm::gpu {
+
+/// Calls body(particle) for thread `t`'s share of the particles of a block. `block_start`: by block
+/// of particles, and the end.
+template <int threads, class Body>
+DM_FN void each_particle(const std::uint32_t* block_start, std::uint32_t block, int t, const Body& body) {
+  const std::uint32_t end = block_start[block + 1];
+  for (std::uint32_t p = block_start[block] + static_cast<std::uint32_t>(t); p < end; p += threads) body(p);
+}
+
+/// The same where threads add to nodes. Particles side by side in memory lie in one cell: threads
+/// that work together take such as lie far apart, so that they do not all wait for the same nodes.
+template <int threads, class Body>
+DM_FN void each_particle_apart(const std::uint32_t* block_start, std::uint32_t block, int t, const Body& body) {
+  constexpr std::uint32_t together = 32;
+  const std::uint32_t begin = block_start[block], count = block_start[block + 1] - begin,
+                      stride = (count + together - 1) / together;
+  for (auto r = static_cast<std::uint32_t>(t); r < together * stride; r += threads) {
+    const std::uint32_t p = r % together * stride + r / together;
+    if (p < count) body(begin + p);
+  }
+}
+
+}  // namespace dreampm::gpu
