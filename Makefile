@@ -117,7 +117,7 @@ MODULES ?=
 empty :=
 space := $(empty) $(empty)
 test-asan: build-asan/build.ninja
-	@$(NINJA) -C build-asan $(MODULES:%=test_%) $(if $(MODULES),dm_kernel_sources)
+	@$(NINJA) -C build-asan $(MODULES:%=test_%) $(if $(MODULES),dm_kernel_sources dm_physics)
 	@$(CTEST) --test-dir build-asan $(if $(MODULES),-R '^($(subst $(space),|,$(strip $(MODULES)))|syntax)\.')
 
 test-clang: build-clang/build.ninja
