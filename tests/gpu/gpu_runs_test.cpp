@@ -72,13 +72,32 @@ bodies:
   pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.06, 0.16]}}}
   cube: {material: jelly, shape: {box: {min: [0.06, 0.08, 0.04], max: [0.14, 0.16, 0.12]}}, velocity: [1, -1, 0]}
 )"},
-    {"sand over a ball, and a plate that moves", R"(
+    {"sand over a ball, and a thin plate that moves", R"(
 materials: {sand: {type: sand, youngs_modulus: 1.0e5}}
 bodies: {heap: {material: sand, shape: {box: {min: [0.04, 0.1, 0.04], max: [0.14, 0.18, 0.12]}}}}
 colliders:
   ball: {shape: {sphere: {radius: 0.04}, center: [0.1, 0.04, 0.08]}, type: separate, friction: 0.4}
   plate: {shape: {box: {size: [0.02, 0.14, 0.16]}, center: [0.2, 0.07, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
 )"},
+    {"snow and sand over a ball, in front of a block that moves", R"(
+materials: {snow: {type: snow}, sand: {type: sand, youngs_modulus: 1.0e5}}
+bodies:
+  heap: {material: sand, shape: {box: {min: [0.04, 0.1, 0.04], max: [0.14, 0.16, 0.12]}}}
+  roof: {material: snow, shape: {box: {min: [0.04, 0.16, 0.04], max: [0.14, 0.2, 0.12]}}}
+colliders:
+  ball: {shape: {sphere: {radius: 0.04}, center: [0.1, 0.04, 0.08]}, type: separate, friction: 0.4}
+  block: {shape: {box: {size: [0.08, 0.1, 0.2]}, center: [0.21, 0.05, 0.08]}, type: slip, motion: {velocity: [-0.3, 0, 0]}}
+)"},
+    {"jelly in honey, whose viscosity is sub-cycled, over a ball that moves", R"(
+materials:
+  honey: {type: newtonian, viscosity: 1000, density: 1400, bulk_modulus: 1.0e5}
+  jelly: {type: elastic, density: 2500, youngs_modulus: 2.0e4, poissons_ratio: 0.3}
+bodies:
+  pool: {material: honey, shape: {box: {min: [0, 0, 0], max: [0.24, 0.1, 0.16]}}, cut: [ball]}
+  cube: {material: jelly, shape: {box: {min: [0.06, 0.11, 0.04], max: [0.16, 0.18, 0.12]}}, velocity: [0, -2, 0]}
+colliders: {ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, motion: {velocity: [0.3, 0, 0]}}}
+)",
+     6, 0.03, ", walls: {all: {type: separate, skin_friction: true}}", ", damping: 1", true},
     {"water over a ball, in front of a block that moves", dam_and_colliders},
     {"the same by contact at nodes alone", dam_and_colliders, 6, 0.03, "", ", surface_contact: false"},
     {"a box that floats", R"(

@@ -101,9 +101,12 @@ class GridUpdate {
 
   /// The grid blocks that it looks at and may change.
   const std::vector<std::uint32_t>& surface_blocks() const;
-  /// Contact of the first field with the surfaces of colliders, in a step of `dt`. The nodes of
-  /// those blocks hold velocities; no others are looked at. Adds the impulses of colliders.
-  /// `bodies`: whether rigid bodies are unknowns, as in the visit of a step, not in a stage.
+  /// The grid blocks around its points, at which it asks for the gaps of solids and grains, into
+  /// `blocks`, rising.
+  void find_gap_blocks(std::vector<std::uint32_t>& blocks) const;
+  /// Contact with the surfaces of colliders, in a step of `dt`. The nodes of those blocks hold
+  /// velocities; no others are looked at. Adds the impulses of colliders. `bodies`: whether rigid
+  /// bodies are unknowns, as in the visit of a step, not in a stage.
   void meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies, GridStats& found);
 
  private:

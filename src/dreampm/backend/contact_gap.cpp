@@ -18,19 +18,13 @@ namespace dreampm {
 namespace {
 
 constexpr float far_away = ContactGaps::none;
+/// Cells: a mean is no less than the least, but for rounding.
+constexpr auto out_of_reach = static_cast<float>(kernel_reach * (1 + 1e-4));
 
 /// The plane of nodes of a wall.
 template <class R>
 std::int32_t plane_of_wall(const World<R>& world, int side) {
   return side % 2 == 0 ? world.low[axis_of(side)] : world.high[axis_of(side)];
-}
-/// The side of the box whose normal is nearest to this one.
-template <class R>
-int side_like(const Vec3<R>& normal) {
-  int a = 0;
-  for (int b = 1; b < 3; ++b)
-    if (std::abs(normal[b]) > std::abs(normal[a])) a = b;
-  return 2 * a + (normal[a] < R(0));
 }
 /// The mean over a stencil of the gradient of the distance, and of the distance, four numbers at
 /// once. `clearance`: of the blocks that a block of particles reaches; `first`: the node at which
@@ -144,6 +138,18 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
   });
 }
 
+bool ContactGaps::reaches_colliders(const NearBlock& near_block) const {
+  return near_block.colliders && !(near_nodes_[near_block.nodes].nearest > out_of_reach);
+}
+
+void ContactGaps::set_gaps(std::int32_t number, const float* gaps) {
+  CellGaps& to = cell_gaps_[static_cast<std::size_t>(number)];
+  for (std::size_t side = 0; side < 6; ++side, gaps += block_nodes) {
+    std::copy_n(gaps, block_nodes, to.gap[side].begin());
+    to.any[side] = std::any_of(gaps, gaps + block_nodes, [](float gap) { return gap < far_away; });
+  }
+}
+
 void ContactGaps::clear_block(std::size_t block) {
   if (gaps_of_.empty() || gaps_of_[block] < 0) return;
   CellGaps& gaps = cell_gaps_[static_cast<std::size_t>(gaps_of_[block])];
@@ -246,9 +252,7 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
   const std::uint32_t begin = set.block_start[near_block.block], end = set.block_start[near_block.block + 1];
   const NearNodes& nodes = near_nodes_[near_block.nodes];
   const ThinWalls thin(obstacles, near_block.stencil_blocks);
-  // A mean is no less than the least, but for rounding.
-  constexpr auto far = static_cast<float>(kernel_reach * (1 + 1e-4));
-  if (begin == end || (nodes.nearest > far && !thin.any())) return;
+  if (begin == end || (nodes.nearest > out_of_reach && !thin.any())) return;
   std::array<const Node<float>*, 8> clearance{};
   for (std::size_t b = 0; b < clearance.size(); ++b)
     if (const std::int32_t block = near_block.stencil_blocks[b]; block != BlockList::none)
@@ -267,7 +271,7 @@ void ContactGaps::measure_colliders(const NearBlock& near_block, const ParticleS
     }
     Vec3i first;
     for (int a = 0; a < 3; ++a) first[a] = static_cast<int>(round_int(u[a] - R(0.5))) + 1;
-    if (nodes.least[NearNodes::index(first)] > far) continue;
+    if (nodes.least[NearNodes::index(first)] > out_of_reach) continue;
     const Stencil<R> stencil = make_stencil(u);
     const R distance = nodes.distance_at(first, stencil);
     if (!(distance < R(kernel_reach))) continue;

@@ -110,8 +110,7 @@ GridStats GridUpdate<R>::Work::visit(World<R>& world, const Obstacles& obstacles
       first(one);
       if (!all_deferred && !waits(b)) one.apply_boundaries();
     });
-    surfaces(team, world, obstacles, 0, gaps, step.per_dt, block_stats);
-    if (!world.grid.solids.empty()) surfaces(team, world, obstacles, 1, gaps, step.per_dt, block_stats);
+    surfaces.of_all_fields(team, world, obstacles, gaps, step.per_dt, block_stats);
     images.fold_ghosts(team, world, loops, gaps);
     if (!world.grid.solids.empty())
       team.loop(deferred_blocks.size(), blocks_at_once,
@@ -164,19 +163,25 @@ const std::vector<std::uint32_t>& GridUpdate<R>::surface_blocks() const {
 }
 
 template <class R>
+void GridUpdate<R>::find_gap_blocks(std::vector<std::uint32_t>& blocks) const {
+  work_->surfaces.find_blocks_around(blocks);
+}
+
+template <class R>
 void GridUpdate<R>::meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies,
                                   GridStats& found) {
   Work& w = *work_;
   for (const std::uint32_t b : w.surface_blocks) {
     BlockStats& stats = w.block_stats[b];
     stats.clear();
-    for (std::size_t n = b * std::size_t{block_nodes}; n < (b + std::size_t{1}) * block_nodes; ++n)
-      stats.sums.mass += static_cast<double>(world.grid.nodes[n].m);
+    for (std::size_t f = 0; f < 2; ++f)
+      for (std::size_t n = b * std::size_t{block_nodes}; n < (b + std::size_t{1}) * block_nodes; ++n)
+        if (!world.grid.field(f).empty()) stats.sums.mass += static_cast<double>(world.grid.field(f)[n].m);
   }
   if (bodies) w.surfaces.begin_bodies(world, dt);
   parallel_region([&](ThreadTeam& team) {
     const FlushToZero mode;
-    w.surfaces(team, world, obstacles, 0, w.gaps, static_cast<R>(world.dx / dt), w.block_stats);
+    w.surfaces.of_all_fields(team, world, obstacles, w.gaps, static_cast<R>(world.dx / dt), w.block_stats);
   });
   w.surfaces.end_bodies();
   for (const std::uint32_t b : w.surface_blocks)

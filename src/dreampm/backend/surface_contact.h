@@ -4,6 +4,7 @@
 // on a surface is then in balance at every node. Stopping the nodes inside the collider instead
 // would leave the nodes outside without the reaction of the surface.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -45,6 +46,16 @@ class SurfaceContact {
     for (const NodeBlock& node_block : node_blocks_) blocks.push_back(static_cast<std::uint32_t>(node_block.block));
   }
 
+  /// The grid blocks around those of its points, at which it asks for gaps, into `blocks`, rising.
+  void find_blocks_around(std::vector<std::uint32_t>& blocks) const {
+    blocks.clear();
+    for (const PointBlock& point_block : point_blocks_)
+      for (const std::int32_t b : point_block.around)
+        if (b != BlockList::none) blocks.push_back(static_cast<std::uint32_t>(b));
+    std::sort(blocks.begin(), blocks.end());
+    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  }
+
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
   /// colliders'. Adds the reactions of colliders to `found`, by grid block: of a node at several
   /// colliders to the one that takes most of its kernel. Matter may approach as fast as closes its
@@ -52,6 +63,12 @@ class SurfaceContact {
   /// passed over. All threads of a team call it together.
   void operator()(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, std::size_t field,
                   const ContactGaps& gaps, R per_dt, std::vector<BlockStats>& found);
+  /// The same for all fields that there are.
+  void of_all_fields(ThreadTeam& team, World<R>& world, const Obstacles& obstacles, const ContactGaps& gaps, R per_dt,
+                     std::vector<BlockStats>& found) {
+    for (std::size_t f = 0; f < 2; ++f)
+      if (!world.grid.field(f).empty()) (*this)(team, world, obstacles, f, gaps, per_dt, found);
+  }
   /// Begins a visit of the fields in a step of `dt` [s] in which rigid bodies are unknowns. Without
   /// it they move as their twists say.
   void begin_bodies(const World<R>& world, double dt) { bodies_.begin(world, dt); }

@@ -1,6 +1,7 @@
-// How far a particle is from a wall of the box, in the numbers of its block. Compilers of device
-// code read it too.
+// How far a particle is from a wall of the box, in the numbers of its block, and which side of it a
+// face is turned like. Compilers of device code read it too.
 #pragma once
+#include "dreampm/math/vec.h"
 #include "dreampm/physics/node.h"
 
 namespace dreampm {
@@ -14,6 +15,15 @@ template <class R>
 DM_FN int first_node(R u) {
   const int towards_zero = static_cast<int>(u);
   return towards_zero - (u < static_cast<R>(towards_zero)) + 1;
+}
+
+/// The side of the box whose normal is nearest to this one.
+template <class R>
+DM_FN int side_like(const Vec3<R>& normal) {
+  int a = 0;
+  for (int b = 1; b < 3; ++b)
+    if (abs(normal[b]) > abs(normal[a])) a = b;
+  return 2 * a + (normal[a] < R(0));
 }
 
 /// The distance [cells] from a wall of the box.

@@ -1,8 +1,9 @@
-// How the threads of a block share the particles of a block.
+// How the threads of a block share the particles of a block, and where the nodes around these are.
 #pragma once
 #include <cstdint>
 
-#include "dreampm/math/scalar.h"
+#include "dreampm/physics/transfer.h"
+#include "dreampm/state/node.h"
 
 namespace dreampm::gpu {
 
@@ -25,6 +26,14 @@ DM_FN void each_particle_apart(const std::uint32_t* block_start, std::uint32_t b
     const std::uint32_t p = r % together * stride + r / together;
     if (p < count) body(begin + p);
   }
+}
+
+/// Node (i, j, k) of a particle's stencil, in the fields of the grid. `reached`: the eight blocks
+/// of the grid that its block reaches, as StencilBlocks.
+DM_FN std::int64_t node_in_reach(const std::int32_t* reached, const Stencil<float>& s, int i, int j, int k) {
+  const int x = s.node(0) + i + 1, y = s.node(1) + j + 1, z = s.node(2) + k + 1;
+  const int corner = (x / block_width * 2 + y / block_width) * 2 + z / block_width;
+  return std::int64_t{reached[corner]} * block_nodes + node_index(x % block_width, y % block_width, z % block_width);
 }
 
 }  // namespace dreampm::gpu

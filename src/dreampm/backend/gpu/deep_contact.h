@@ -10,7 +10,7 @@ namespace dreampm::gpu {
 /// How a collider's surface holds matter.
 struct ColliderSurface {
   WallType type;
-  float friction;
+  float friction[2];  ///< by field
 };
 /// A node too deep inside a collider for contact at its surface; as ObstacleNode.
 struct DeepNode {
@@ -49,9 +49,9 @@ struct MeetDeep {
       block.each_thread([&](int t) {
         const std::uint32_t d = group.begin + static_cast<std::uint32_t>(t);
         shared.given[t] = ImpulseTerms<float>::none();
-        if (d < group.end)
-          shared.given[t] = meet(nodes[d], colliders[group.collider],
-                                 in.grid.field[0][std::int64_t{at.block} * block_nodes + nodes[d].node]);
+        for (int f = 0; f < 2 && in.grid.field[f] && d < group.end; ++f)
+          shared.given[t].add(meet(nodes[d], colliders[group.collider], f,
+                                   in.grid.field[f][std::int64_t{at.block} * block_nodes + nodes[d].node]));
       });
       add_up_threads<threads>(block, shared.given);
       block.each_thread([&](int t) {
@@ -61,12 +61,12 @@ struct MeetDeep {
   }
 
  private:
-  static DM_FN ImpulseTerms<float> meet(const DeepNode& at, const ColliderSurface& collider, Node<float>& node) {
+  static DM_FN ImpulseTerms<float> meet(const DeepNode& at, const ColliderSurface& collider, int f, Node<float>& node) {
     ImpulseSumOf<float> sum;
     if (has_mass(node)) {
       const Vec3<float> before = velocity(node),
                         after =
-                            contact(before - at.velocity, at.normal, collider.type, collider.friction) + at.velocity;
+                            contact(before - at.velocity, at.normal, collider.type, collider.friction[f]) + at.velocity;
       set_velocity(node, after);
       sum.add(static_cast<Vec3<float>>(node_offset(at.node)), node.m, before, after, after);
     }

@@ -67,7 +67,7 @@ class Gpu final : public Backend<float> {
   void colliders_moved(const World<float>& world) override {
     obstacles_.prepare(world);
     update_.colliders_moved(world, obstacles_);
-    visit_.colliders_moved(world, obstacles_);
+    visit_.colliders_moved(world, obstacles_, update_);
     upload_obstacles(world);
   }
 
@@ -251,7 +251,7 @@ class Gpu final : public Backend<float> {
     memory_.stencil_blocks.upload(gpu::flat(stencil_blocks_));
     memory_.sources.upload(stencil_blocks_, world.grid.blocks.size());
     passes_.prepare(blocks);
-    visit_.prepare(world, obstacles_, update_);
+    visit_.prepare(world, obstacles_, update_, stencil_blocks_);
     upload_obstacles(world);
   }
   void upload_obstacles(const World<float>& world) {

@@ -7,6 +7,7 @@
 #include "dreampm/backend/block_visit.h"
 #include "dreampm/backend/gpu/kernels.h"
 #include "dreampm/backend/gpu/launch.h"
+#include "dreampm/base/parallel.h"
 
 namespace dreampm::gpu {
 namespace {
@@ -33,6 +34,8 @@ std::size_t blocks_of(const LayersInput& layers) {
 
 GridVisit::GridVisit(Device& device)
     : device_(&device),
+      shared_(device),
+      around_(device),
       blocks_(device),
       entries_(device),
       waiting_(device),
@@ -53,25 +56,63 @@ GridVisit::GridVisit(Device& device)
       surface_blocks_(device),
       copies_(device),
       near_(device),
+      near_colliders_(device),
       planes_(device),
       gaps_of_(device),
       walls_of_(device),
       gaps_(device),
-      gap_(device) {}
+      gap_(device),
+      asked_(device),
+      asked_gaps_(device) {}
 
 bool GridVisit::takes(const World<float>& world, const Obstacles& obstacles) {
   const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
-  return world.fields.empty() && !world.needs_solid_field() && !(solid && obstacles.any());
+  return world.fields.empty() && !(solid && obstacles.any_thin());
 }
 
-void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
+void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
+                        const std::vector<StencilBlocks>& reached) {
+  find_shared(world, reached);
   find_entries(world, obstacles, host);
-  find_gaps(world, host.gaps());
-  colliders_moved(world, obstacles);
+  colliders_moved(world, obstacles, host);
 }
 
-/// Finds the nodes deep inside colliders.
-void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles) {
+void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
+  find_gaps(world, host);
+  find_deep(world, obstacles);
+}
+
+/// Finds the blocks that matter of both fields reaches, and what lies around them.
+void GridVisit::find_shared(const World<float>& world, const std::vector<StencilBlocks>& reached) {
+  is_shared_.assign(world.grid.blocks.size(), 0);
+  std::vector<std::uint32_t> shared;
+  std::vector<std::int32_t> around;
+  if (world.needs_solid_field()) {
+    constexpr std::uint8_t both = 3;
+    for (std::size_t b = 0; b < reached.size(); ++b) {
+      std::uint8_t fields = 0;
+      for (const ParticleSet<float>& set : world.sets)
+        if (set.size() > 0 && set.block_start[b] < set.block_start[b + 1])
+          fields = static_cast<std::uint8_t>(fields | 1 << world.field_of(set));
+      for (const std::int32_t at : reached[b])
+        if (at != BlockList::none)
+          is_shared_[static_cast<std::size_t>(at)] =
+              static_cast<std::uint8_t>(is_shared_[static_cast<std::size_t>(at)] | fields);
+    }
+    for (std::size_t b = 0; b < is_shared_.size(); ++b)
+      if (is_shared_[b] == both) shared.push_back(static_cast<std::uint32_t>(b));
+    around.resize(shared.size() * 27);
+    parallel_for(shared.size(), 64, [&](std::size_t i) {
+      const Neighbors near = neighbors_in(world.grid.blocks, world, world.grid.blocks[shared[i]]);
+      std::copy(near.begin(), near.end(), around.begin() + static_cast<std::ptrdiff_t>(27 * i));
+    });
+    for (std::uint8_t& fields : is_shared_) fields = fields == both;
+  }
+  images_ = solid_images(world);
+  shared_.upload(shared), around_.upload(around);
+}
+
+void GridVisit::find_deep(const World<float>& world, const Obstacles& obstacles) {
   std::vector<DeepBlock> blocks;
   std::vector<DeepNodes> groups;
   std::vector<DeepNode> nodes;
@@ -92,16 +133,22 @@ void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obst
     if (size(groups) > begin) blocks.push_back({static_cast<std::uint32_t>(b), begin, size(groups)});
   }
   std::vector<ColliderSurface> surfaces;
-  for (const Collider& c : world.colliders)
-    surfaces.push_back({c.contact(), world.holds_liquid(0) ? 0.0f : static_cast<float>(c.friction)});
+  for (const Collider& c : world.colliders) {
+    const auto friction = [&](std::size_t f) { return world.holds_liquid(f) ? 0.0f : static_cast<float>(c.friction); };
+    surfaces.push_back({c.contact(), {friction(0), friction(1)}});
+  }
   deep_blocks_.upload(blocks), deep_groups_.upload(groups), deep_nodes_.upload(nodes), surfaces_.upload(surfaces);
   deep_given_.resize(groups.size());
 }
 
-void GridVisit::find_gaps(const World<float>& world, const ContactGaps& gaps) {
+void GridVisit::find_gaps(const World<float>& world, GridUpdate<float>& host) {
+  const ContactGaps& gaps = host.gaps();
   for (std::size_t f = 0; f < 2; ++f) gapped_[f] = gaps.has(world, f);
   std::vector<NearWalls> near;
+  std::vector<std::uint32_t> colliders;
   for (const ContactGaps::NearBlock& b : gaps.near_blocks()) {
+    if (gaps.reaches_colliders(b)) colliders.push_back(b.block);
+    if (std::all_of(b.plane.begin(), b.plane.end(), [](std::int8_t plane) { return plane < 0; })) continue;
     NearWalls& one = near.emplace_back(NearWalls{b.block, {}});
     std::copy(b.plane.begin(), b.plane.end(), one.plane);
   }
@@ -112,7 +159,15 @@ void GridVisit::find_gaps(const World<float>& world, const ContactGaps& gaps) {
   }
   std::vector<std::int32_t> walls_of;
   for (const auto& of_block : gaps.walls_of()) walls_of.insert(walls_of.end(), of_block.begin(), of_block.end());
-  near_.upload(near), planes_.upload(planes), gaps_of_.upload(gaps.gaps_of()), walls_of_.upload(walls_of);
+  asked_home_.clear();
+  if (!colliders.empty()) {
+    std::vector<std::uint32_t> blocks;
+    host.find_gap_blocks(blocks);
+    for (const std::uint32_t b : blocks)
+      if (gaps.gaps_of()[b] >= 0) asked_home_.push_back(gaps.gaps_of()[b]);
+  }
+  near_.upload(near), near_colliders_.upload(colliders), planes_.upload(planes);
+  gaps_of_.upload(gaps.gaps_of()), walls_of_.upload(walls_of), asked_.upload(asked_home_);
   gaps_.resize(gaps.gap_count() * block_gaps);
   gap_.resize(planes.size() * plane_nodes);
 }
@@ -131,7 +186,7 @@ void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacl
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Vec3i first = list[b] * block_width;
     const std::uint32_t walls = walls_reached(world, first);
-    const bool waits = all_wait || images.changes(b) || (obstacles.any() && obstacles.near(b));
+    const bool waits = all_wait || is_shared_[b] || images.changes(b) || (obstacles.any() && obstacles.near(b));
     blocks[b] = {first, walls, waits, walls ? static_cast<std::int32_t>(entries.size()) : -1};
     if (blocks[b].waits) waiting.push_back(static_cast<std::uint32_t>(b));
     if (walls) entries.resize(entries.size() + 6, -1);
@@ -183,7 +238,7 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
                                 GridUpdate<float>& host, double dt) {
   GridStats total;
   total.colliders.resize(world.colliders.size());
-  if (gapped_[0] || gapped_[1]) measure_gaps(world, memory);
+  if (gapped_[0] || gapped_[1]) measure_gaps(world, memory, host.gaps());
   const VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
   launch(*device_, BeginVisit{in}, blocks_.size());
   contact(in, world, memory, obstacles, host, dt, true, total);
@@ -199,6 +254,7 @@ void GridVisit::contact(const VisitInput& in, World<float>& world, Memory& memor
   };
   for (int axis = 2; folds_ && axis >= 0; --axis)
     launch(*device_, FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
+  launch(*device_, MeetSolids{shared_nodes(in)}, shared_count());
   launch(
       *device_,
       MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
@@ -213,41 +269,55 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
   const std::vector<std::uint32_t>& blocks = host.surface_blocks();
   if (blocks.empty()) return;
   surface_blocks_.upload(blocks);
-  copies_.resize(blocks.size() * block_nodes), copies_home_.resize(copies_.size());
-  Node<float>* const grid = memory.nodes[nodes].data();
-  launch(*device_, CopyBlocks{surface_blocks_.data(), grid, copies_.data(), false}, blocks.size());
-  copies_.download(copies_home_);
-  const auto copy = [&](auto&& one) {
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      one(world.grid.nodes.data() + std::size_t{blocks[i]} * block_nodes, copies_home_.data() + i * block_nodes);
+  const std::size_t size = blocks.size() * block_nodes, fields = world.grid.solids.empty() ? 1 : 2;
+  copies_.resize(fields * size), copies_home_.resize(copies_.size());
+  const auto copy_there = [&](bool back) {
+    for (std::size_t f = 0; f < fields; ++f)
+      launch(
+          *device_,
+          CopyBlocks{surface_blocks_.data(), memory.nodes[of_field(nodes, f)].data(), copies_.data() + f * size, back},
+          blocks.size());
   };
-  copy([](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
+  const auto copy_here = [&](auto&& one) {
+    for (std::size_t f = 0; f < fields; ++f)
+      for (std::size_t i = 0; i < blocks.size(); ++i)
+        one(world.grid.field(f).data() + std::size_t{blocks[i]} * block_nodes,
+            copies_home_.data() + f * size + i * block_nodes);
+  };
+  copy_there(false);
+  copies_.download(copies_home_);
+  copy_here([](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
   host.meet_surfaces(world, obstacles, dt, bodies, found);
-  copy([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
+  copy_here([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
   copies_.upload(copies_home_);
-  launch(*device_, CopyBlocks{surface_blocks_.data(), grid, copies_.data(), true}, blocks.size());
+  copy_there(true);
 }
 
-void GridVisit::measure_gaps(const World<float>& world, Memory& memory) {
+void GridVisit::measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps) {
   launch(*device_, ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const ParticleSet<float>& set = world.sets[s];
     if (set.liquid || set.size() == 0) continue;
     const SetMemory& m = memory.sets[s];
-    launch(*device_,
-           MeasureGaps{near_.data(),
-                       {m.now.u[0].data(), m.now.u[1].data(), m.now.u[2].data()},
-                       m.block_start.data(),
-                       memory.stencil_blocks.data(),
-                       gaps_of_.data(),
-                       gaps_.data(),
-                       static_cast<float>(ColliderContact::contact_gap * set.spacing() / world.dx)},
-           near_.size());
+    const GapInput in{{m.now.u[0].data(), m.now.u[1].data(), m.now.u[2].data()},
+                      m.block_start.data(),
+                      memory.stencil_blocks.data(),
+                      gaps_of_.data(),
+                      gaps_.data(),
+                      static_cast<float>(ColliderContact::contact_gap * set.spacing() / world.dx)};
+    launch(*device_, MeasureGaps{in, near_.data()}, near_.size());
+    launch(*device_, MeasureColliderGaps{in, near_colliders_.data(), memory.clearance.data()}, near_colliders_.size());
   }
   launch(*device_,
          FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,
                       gap_.data()},
          (planes_.size() + FindWallGaps::at_once - 1) / FindWallGaps::at_once);
+  if (asked_home_.empty()) return;
+  asked_gaps_.resize(asked_home_.size() * block_gaps), asked_gaps_home_.resize(asked_gaps_.size());
+  launch(*device_, CopyGaps{asked_.data(), gaps_.data(), asked_gaps_.data()}, asked_home_.size());
+  asked_gaps_.download(asked_gaps_home_);
+  for (std::size_t i = 0; i < asked_home_.size(); ++i)
+    gaps.set_gaps(asked_home_[i], asked_gaps_home_.data() + i * block_gaps);
 }
 
 VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt, double part) {

@@ -14,14 +14,16 @@ namespace dreampm::gpu {
 class GridVisit {
  public:
   explicit GridVisit(Device& device);
-  /// True if a device can visit the nodes of this world: the host does where force fields or a
-  /// second field act on them, or solids or grains meet colliders.
+  /// True if a device can visit the nodes of this world: the host does where force fields act on
+  /// them, or solids or grains meet colliders that are thin.
   static bool takes(const World<float>& world, const Obstacles& obstacles);
 
   /// Must be called after every change of the grid's block list or of the particles' order.
-  void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
+  /// `reached`: by block of particles.
+  void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
+               const std::vector<StencilBlocks>& reached);
   /// Must be called after colliders have moved, if nothing else changed.
-  void colliders_moved(const World<float>& world, const Obstacles& obstacles);
+  void colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
   /// As Backend::grid_update. Contact with surfaces of colliders is the host's: the blocks of nodes
   /// that it looks at go there and come back, and are overwritten in the World.
   GridStats operator()(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -40,19 +42,29 @@ class GridVisit {
   void add_results(const VisitInput& in, bool dragged, GridStats& total);
   /// As VisitInput::given, of boundary layers in a stage.
   SourceTerms* dragged() { return dragged_.data(); }
+  /// The blocks of the grid that matter of both fields reaches.
+  SharedNodes shared_nodes(const VisitInput& in) const { return {in, shared_.data(), around_.data(), images_}; }
+  std::size_t shared_count() const { return shared_.size(); }
   /// Ranges of the blocks of the grid, for sums.
   const Buffer<Range>& block_ranges() const { return block_ranges_; }
 
  private:
+  void find_shared(const World<float>& world, const std::vector<StencilBlocks>& reached);
   void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
-  void find_gaps(const World<float>& world, const ContactGaps& gaps);
+  void find_deep(const World<float>& world, const Obstacles& obstacles);
+  void find_gaps(const World<float>& world, GridUpdate<float>& host);
   void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
                      double dt, bool bodies, GridStats& found);
-  void measure_gaps(const World<float>& world, Memory& memory);
+  void measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps);
   LayersInput layers(int axis) const;
 
   Device* device_;
   bool folds_ = false, gapped_[2] = {};
+  // Blocks that matter of both fields reaches.
+  std::vector<std::uint8_t> is_shared_;  ///< by block of the grid
+  Buffer<std::uint32_t> shared_;
+  Buffer<std::int32_t> around_;
+  SolidImages images_{};
   Buffer<VisitBlock> blocks_;
   Buffer<std::int32_t> entries_;
   Buffer<std::uint32_t> waiting_;
@@ -77,11 +89,15 @@ class GridVisit {
   Buffer<std::uint32_t> surface_blocks_;
   Buffer<Node<float>> copies_;
   std::vector<Node<float>> copies_home_;
-  // Gaps before walls.
+  // Gaps before walls and colliders, and those that the contact with surfaces asks for.
   Buffer<NearWalls> near_;
+  Buffer<std::uint32_t> near_colliders_;
   Buffer<WallPlane> planes_;
   Buffer<std::int32_t> gaps_of_, walls_of_, gaps_;
   Buffer<float> gap_;
+  std::vector<std::int32_t> asked_home_;
+  Buffer<std::int32_t> asked_, asked_gaps_;
+  std::vector<float> asked_gaps_home_;
 };
 
 }  // namespace dreampm::gpu

@@ -3,13 +3,14 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "dreampm/backend/gpu/contact_gaps.h"
 #include "dreampm/backend/gpu/deep_contact.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
+#include "dreampm/backend/gpu/solid_contact.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/stage_visit.h"
 #include "dreampm/backend/gpu/viscous_pass.h"
-#include "dreampm/backend/gpu/wall_gaps.h"
 
 namespace dreampm::gpu {
 
@@ -63,9 +64,10 @@ struct MaterialKernels {
 using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
 /// Those of the grid, and sums.
-using GridKernels = KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep,
-                               CopyBlocks, BeginStage, EndStage, ClearGaps, MeasureGaps, FindWallGaps, AddUp<BlockSums>,
-                               AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+using GridKernels =
+    KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep, CopyBlocks,
+               MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps, MeasureColliderGaps, FindWallGaps,
+               CopyGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
     typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;

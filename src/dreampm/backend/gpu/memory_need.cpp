@@ -1,5 +1,7 @@
 #include "dreampm/backend/gpu/memory_need.h"
 
+#include <algorithm>
+
 #include "dreampm/backend/gpu/set_memory.h"
 #include "dreampm/base/error.h"
 #include "dreampm/state/world_fields.h"
@@ -17,16 +19,25 @@ std::size_t bytes_needed(const World<float>& world) {
     bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + sort + motion + distance);
   }
   visit_nodes(world.grid, [&](const auto& field, const auto&) { fields += field.needed(world); });
-  // Stages of viscosity, where any may come: momenta, the velocities before and their change.
-  const bool stages = world.settings.sub_cycles && world.holds_liquid(0);
+  // Stages of viscosity, where any may come: momenta, the velocities before and their change, by
+  // field.
+  const std::size_t of_stages = !world.settings.sub_cycles || !world.holds_liquid(0) ? 0
+                                : world.needs_solid_field()                          ? 6
+                                                                                     : 3;
   constexpr std::size_t nodes = block_nodes * sizeof(Node<float>), cells = block_nodes * sizeof(std::uint32_t);
   constexpr std::size_t tables = 512;  // of a block, about
   bytes += world.particle_blocks.size() *
            (fields * arena_nodes * sizeof(NodeCounts) +
             world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) + sizeof(BlockSums) + tables);
-  // One more field is on its way in a sort; colliders have two of their own.
-  bytes +=
-      world.grid.blocks.size() * ((fields + 1 + (world.colliders.empty() ? 0 : 2) + (stages ? 4 : 0)) * nodes + tables);
+  // One more field is on its way in a sort. Colliders have two of their own, and at their surfaces
+  // copies of what moves, and of the gaps of solids.
+  std::size_t of_colliders = 0, gaps = 0;
+  if (!world.colliders.empty()) {
+    of_colliders = 2 + (world.needs_solid_field() ? 2 : 1);
+    const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
+    gaps = solid ? 2 * block_gaps * sizeof(float) : 0;
+  }
+  bytes += world.grid.blocks.size() * ((fields + 1 + of_colliders + of_stages) * nodes + gaps + tables);
   return bytes + bytes / 8;  // Buffers have room to grow
 }
 

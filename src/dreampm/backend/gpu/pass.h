@@ -174,10 +174,7 @@ struct Pass {
 
   /// A node of the grid around a particle of block `b`.
   DM_FN std::int64_t node_of(int b, const Stencil<float>& s, int i, int j, int k) const {
-    const int x = s.node(0) + i + 1, y = s.node(1) + j + 1, z = s.node(2) + k + 1;
-    const int corner = (x / block_width * 2 + y / block_width) * 2 + z / block_width;
-    return std::int64_t{in.stencil_blocks[8 * b + corner]} * block_nodes +
-           node_index(x % block_width, y % block_width, z % block_width);
+    return node_in_reach(in.stencil_blocks + 8 * b, s, i, j, k);
   }
 
   DM_FN void gather_all(int b, std::uint32_t p, const Vec3<float>& u, const BlockWalls<float>& walls,

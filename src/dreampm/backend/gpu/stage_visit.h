@@ -9,13 +9,16 @@ namespace dreampm::gpu {
 
 /// A stage, as RklStage.
 struct StageInput {
+  struct Field {
+    const Node<float>* momenta;  ///< of viscosity
+    const Node<float>* stress;   ///< or null
+    Node<float>*old, *change;
+  };
   float keep, gain;
   double part;
   Vec3<float> kick;
-  bool first;                  ///< whether no change was before
-  const Node<float>* momenta;  ///< of viscosity
-  const Node<float>* stress;   ///< or null
-  Node<float>*old, *change;
+  bool first;  ///< whether no change was before
+  Field field[2];
   SourceTerms* dragged;  ///< impulses of boundary layers, as VisitInput::given; null without
   SourceTerms* driven;   ///< by block of the grid; `work`: of gravity and stress
 };
@@ -34,7 +37,7 @@ struct BeginStage {
     const std::int64_t first = std::int64_t{b} * block_nodes;
     block.each_thread([&](int t) {
       shared.terms[t] = NodeTerms<float>::none();
-      shared.terms[t].mass = force(first + t);
+      for (int f = 0; f < 2 && in.grid.field[f]; ++f) shared.terms[t].mass += force(f, first + t);
     });
     add_up_threads<threads>(block, shared.terms);
     block.each_thread([&](int t) {
@@ -45,22 +48,24 @@ struct BeginStage {
     });
     if (stage.dragged) drag(block, shared, b);
     block.each_thread([&](int t) {
-      Node<float>& node = in.grid.field[0][first + t];
-      if (has_mass(node)) set_velocity(node, velocity(node) + velocity(stage.change[first + t]));
+      for (int f = 0; f < 2 && in.grid.field[f]; ++f)
+        if (Node<float>& node = in.grid.field[f][first + t]; has_mass(node))
+          set_velocity(node, velocity(node) + velocity(stage.field[f].change[first + t]));
     });
     if (!in.blocks[b].waits) BlockBoundaries::finish(in, block, shared, b);
   }
 
  private:
   /// Returns the node's mass, where it has any.
-  DM_FN float force(std::int64_t at) const {
-    const Node<float> node = in.grid.field[0][at];
+  DM_FN float force(int f, std::int64_t at) const {
+    const StageInput::Field& of = stage.field[f];
+    const Node<float> node = in.grid.field[f][at];
     if (!has_mass(node)) return 0;
-    stage.old[at] = node;
-    Vec3<float> given = velocity(stage.momenta[at]);
-    if (stage.stress) given += velocity(stage.stress[at]);
-    const Vec3<float> before = stage.first ? Vec3<float>{0, 0, 0} : velocity(stage.change[at]);
-    set_velocity(stage.change[at], stage_change(before, given, node.m, stage.keep, stage.gain, stage.kick));
+    of.old[at] = node;
+    Vec3<float> given = velocity(of.momenta[at]);
+    if (of.stress) given += velocity(of.stress[at]);
+    const Vec3<float> before = stage.first ? Vec3<float>{0, 0, 0} : velocity(of.change[at]);
+    set_velocity(of.change[at], stage_change(before, given, node.m, stage.keep, stage.gain, stage.kick));
     return node.m;
   }
   /// The boundary layers of walls.
@@ -85,7 +90,8 @@ struct BeginStage {
         boundary_layer(in.step, side, first + node_offset(n), node, mixture::viscosity(in.grid.mixture[at]), layer)) {
       const Vec3<float> lost = lost_in_stage(in.step, layer, stage.gain), before = velocity(node),
                         after = before - lost;
-      set_velocity(stage.change[at], velocity(stage.change[at]) - lost);
+      Node<float>& change = stage.field[0].change[at];
+      set_velocity(change, velocity(change) - lost);
       given.add(static_cast<Vec3<float>>(node_offset(n)), node.m, before, after, after);
     }
     return ImpulseTerms<float>::of(given);
@@ -106,7 +112,8 @@ struct EndStage {
     const int b = block.index();
     block.each_thread([&](int t) {
       shared.driven[t] = ImpulseTerms<float>::none();
-      shared.driven[t].work = keep(std::int64_t{b} * block_nodes + t);
+      for (int f = 0; f < 2 && in.grid.field[f]; ++f)
+        shared.driven[t].work += keep(f, std::int64_t{b} * block_nodes + t);
     });
     add_up_threads<threads>(block, shared.driven);
     block.each_thread([&](int t) {
@@ -117,12 +124,13 @@ struct EndStage {
   }
 
  private:
-  DM_FN float keep(std::int64_t at) const {
-    const Node<float> node = in.grid.field[0][at];
+  DM_FN float keep(int f, std::int64_t at) const {
+    const StageInput::Field& of = stage.field[f];
+    const Node<float> node = in.grid.field[f][at];
     if (!has_mass(node)) return 0;
-    const Vec3<float> before = velocity(stage.old[at]), now = velocity(node);
-    if (!(now == before + velocity(stage.change[at]))) set_velocity(stage.change[at], now - before);
-    const Vec3<float> stress = stage.stress ? velocity(stage.stress[at]) : Vec3<float>{0, 0, 0};
+    const Vec3<float> before = velocity(of.old[at]), now = velocity(node);
+    if (!(now == before + velocity(of.change[at]))) set_velocity(of.change[at], now - before);
+    const Vec3<float> stress = of.stress ? velocity(of.stress[at]) : Vec3<float>{0, 0, 0};
     return driven_work2(stage.kick, stress, node.m, before, now);
   }
 };

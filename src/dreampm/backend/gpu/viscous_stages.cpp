@@ -9,24 +9,30 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
                                  double dt, GridStats& found) {
   sums_.begin(world.colliders.size(), found);
   const std::size_t blocks = world.grid.blocks.size();
-  old_.resize(blocks * block_nodes), change_.resize(blocks * block_nodes), driven_.resize(blocks);
+  for (std::size_t f = 0; f < 2; ++f) {
+    const std::size_t nodes = world.grid.field(f).size();
+    old_[f].resize(nodes), change_[f].resize(nodes);
+  }
+  driven_.resize(blocks);
   for (int number = 1; number <= world.viscous_stages; ++number) {
     passes.find_viscous_forces(world, dt, next);
     const RklFactors factors(world.viscous_stages, number);
     VisitInput in = visit.input(world, memory, dt, factors.gain);
     in.damped = nullptr;  // damping acted before the stages
-    const StageInput stage{static_cast<float>(factors.kept),
-                           static_cast<float>(factors.gain),
-                           factors.part,
-                           static_cast<Vec3<float>>(world.gravity_over(dt) * dt),
-                           number == 1,
-                           memory.momenta[0].data(),
-                           memory.nodes[stress_nodes].data(),
-                           old_.data(),
-                           change_.data(),
-                           in.step.skin ? visit.dragged() : nullptr,
-                           driven_.data()};
+    StageInput stage{static_cast<float>(factors.kept),
+                     static_cast<float>(factors.gain),
+                     factors.part,
+                     static_cast<Vec3<float>>(world.gravity_over(dt) * dt),
+                     number == 1,
+                     {},
+                     in.step.skin ? visit.dragged() : nullptr,
+                     driven_.data()};
+    for (std::size_t f = 0; f < 2; ++f)
+      stage.field[f] = {memory.momenta[f].data(), memory.nodes[of_field(stress_nodes, f)].data(), old_[f].data(),
+                        change_[f].data()};
     launch(*device_, BeginStage{in, stage}, blocks);
+    if (const SharedNodes shared = visit.shared_nodes(in); in.grid.field[1])
+      launch(*device_, DragSolids{shared, stage}, visit.shared_count());
     GridStats stats;
     stats.colliders.resize(world.colliders.size());
     visit.contact(in, world, memory, obstacles, host, dt, false, stats);

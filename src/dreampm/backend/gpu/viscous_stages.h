@@ -1,5 +1,7 @@
 // The stages of viscosity of a World in a device's memory, in place of GridUpdate::sub_cycle.
 #pragma once
+#include <array>
+
 #include "dreampm/backend/gpu/grid_visit.h"
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/stage_sums.h"
@@ -9,7 +11,11 @@ namespace dreampm::gpu {
 class ViscousStages {
  public:
   explicit ViscousStages(Device& device)
-      : device_(&device), old_(device), change_(device), driven_(device), driven_parts_(device) {}
+      : device_(&device),
+        old_{Buffer<Node<float>>(device), Buffer<Node<float>>(device)},
+        change_{Buffer<Node<float>>(device), Buffer<Node<float>>(device)},
+        driven_(device),
+        driven_parts_(device) {}
   /// As Backend::sub_cycle. `next`: a grid as long as the World's.
   double operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
                     const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next, double dt,
@@ -19,7 +25,7 @@ class ViscousStages {
   double driven_work(const GridVisit& visit);
 
   Device* device_;
-  Buffer<Node<float>> old_, change_;
+  std::array<Buffer<Node<float>>, 2> old_, change_;  ///< by field
   Buffer<SourceTerms> driven_, driven_parts_;
   std::vector<SourceTerms> parts_;
   StageSums sums_;
