@@ -2,6 +2,7 @@
 // that a scene may hold. The ledger closes in each.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -96,8 +97,22 @@ bodies:
   pool: {material: honey, shape: {box: {min: [0, 0, 0], max: [0.24, 0.1, 0.16]}}, cut: [ball]}
   cube: {material: jelly, shape: {box: {min: [0.06, 0.11, 0.04], max: [0.16, 0.18, 0.12]}}, velocity: [0, -2, 0]}
 colliders: {ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, motion: {velocity: [0.3, 0, 0]}}}
+fields: {pull: {type: attractor, point: [0.2, 0.1, 0.08], strength: 0.2, radius: 0.05}}
 )",
      6, 0.03, ", walls: {all: {type: separate, skin_friction: true}}", ", damping: 1", true},
+    {"force fields of all kinds over water and jelly", R"(
+materials:
+  water: {type: newtonian}
+  jelly: {type: elastic, density: 1500, youngs_modulus: 2.0e4, poissons_ratio: 0.3}
+bodies:
+  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.16, 0.08, 0.16]}}}
+  cube: {material: jelly, shape: {box: {min: [0.06, 0.09, 0.04], max: [0.14, 0.16, 0.12]}}, velocity: [0, -1, 0]}
+fields:
+  pull: {type: attractor, point: [0.2, 0.1, 0.08], strength: 0.1, radius: 0.05}
+  gust: {type: wind, velocity: [3, 0, 0], coefficient: 2, box: {min: [0, 0.05, 0], max: [0.24, 0.2, 0.16]}}
+  slow: {type: drag, rate: 3, velocity: [0, 0, 0.5]}
+  hand: {type: brush, point: [0.08, 0.06, 0.08], radius: 0.05, velocity: [0, 1, 0], rate: 50}
+)"},
     {"water over a ball, in front of a block that moves", dam_and_colliders},
     {"the same by contact at nodes alone", dam_and_colliders, 6, 0.03, "", ", surface_contact: false"},
     {"a box that floats", R"(
@@ -162,6 +177,7 @@ TEST(GpuRuns, FollowTheReferenceAndTheLedgerCloses) {
       EXPECT_GT(got.particles, 150);
       EXPECT_NEAR(got.particles, want.particles, one.apart * want.particles);
       EXPECT_NEAR(got.kinetic, want.kinetic, one.apart * want.kinetic);
+      EXPECT_NEAR(got.work, want.work, one.apart * std::abs(want.work) + 1e-9);
       EXPECT_NEAR(got.j_min, want.j_min, 0.02);
       EXPECT_EQ(got.stages > 0, one.staged);
     }

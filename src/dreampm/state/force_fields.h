@@ -18,11 +18,14 @@ class FieldSteps {
   /// A bound of the speed [m/s] after the step at `x`, for any velocity of at most `speed`.
   R fastest(R speed, const Vec3d& x) const;
 
- private:
   struct One {
     Fields::Step<R> step;
     Box3d box;  ///< where it acts; everything where the field is not limited
   };
+  auto begin() const { return fields_.begin(); }
+  auto end() const { return fields_.end(); }
+
+ private:
   boost::container::small_vector<One, 4> fields_;  ///< made anew in every step, which should take no memory
 };
 

@@ -45,9 +45,13 @@ GridVisit::GridVisit(Device& device)
       given_(device),
       dragged_(device),
       damped_(device),
+      fielded_(device),
       block_ranges_(device),
       wall_ranges_(device),
       parts_(device),
+      block_parts_(device),
+      fields_(device),
+      field_impulses_{Buffer<Vec3<float>>(device), Buffer<Vec3<float>>(device)},
       deep_blocks_(device),
       deep_groups_(device),
       deep_nodes_(device),
@@ -67,7 +71,7 @@ GridVisit::GridVisit(Device& device)
 
 bool GridVisit::takes(const World<float>& world, const Obstacles& obstacles) {
   const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
-  return world.fields.empty() && !(solid && obstacles.any_thin());
+  return !(solid && obstacles.any_thin());
 }
 
 void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -239,9 +243,12 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
   GridStats total;
   total.colliders.resize(world.colliders.size());
   if (gapped_[0] || gapped_[1]) measure_gaps(world, memory, host.gaps());
-  const VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
+  VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
+  in.all_wait = !world.fields.empty();
   launch(*device_, BeginVisit{in}, blocks_.size());
+  apply_fields(in, world, dt);
   contact(in, world, memory, obstacles, host, dt, true, total);
+  if (in.all_wait) launch(*device_, FieldWork{in, fields()}, blocks_.size());
   add_results(in, false, total);
   return total;
 }
@@ -259,9 +266,35 @@ void GridVisit::contact(const VisitInput& in, World<float>& world, Memory& memor
       *device_,
       MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
       deep_blocks_.size());
-  launch(*device_, FinishVisit{in, waiting_.data()}, waiting_.size());
+  if (in.all_wait)
+    launch(*device_, FinishVisit{in, nullptr}, blocks_.size());
+  else
+    launch(*device_, FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
     launch(*device_, ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
+}
+
+void GridVisit::apply_fields(const VisitInput& in, const World<float>& world, double dt) {
+  std::vector<FieldStep> steps;
+  for (const auto& one : FieldSteps<float>(world, dt)) steps.emplace_back(one.step, one.box);
+  fields_.upload(steps);
+  if (steps.empty()) return;
+  fielded_.resize(blocks_.size());
+  for (std::size_t f = 0; f < 2; ++f) field_impulses_[f].resize(world.grid.field(f).size());
+  launch(*device_, ApplyFields{in, fields()}, blocks_.size());
+}
+
+FieldInput GridVisit::fields() const {
+  return {fields_.data(),
+          static_cast<std::int32_t>(fields_.size()),
+          {field_impulses_[0].data(), field_impulses_[1].data()},
+          fielded_.data()};
+}
+
+double GridVisit::field_work(const VisitInput& in) {
+  if (fields_.size() == 0) return 0;
+  launch(*device_, FieldWork{in, fields()}, blocks_.size());
+  return sum_of_blocks(fielded_).work;
 }
 
 void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -347,15 +380,16 @@ LayersInput GridVisit::layers(int axis) const {
 void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total) {
   // All sums come home at once.
   const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size(), deep = deep_given_.size(),
-                    damping = in.damped ? blocks : 0, drag = dragged ? walls : 0;
+                    damping = in.damped ? blocks : 0, drag = dragged ? walls : 0, fields = in.all_wait ? blocks : 0;
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));
-  parts_.resize((blocks + walls + drag + damping) * sizeof(GridTerms));
+  parts_.resize((blocks + walls + drag + damping + fields) * sizeof(GridTerms));
   auto* const grid = reinterpret_cast<GridTerms*>(parts_.data());
   auto* const given = reinterpret_cast<SourceTerms*>(grid + blocks);
   launch(*device_, AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
   launch(*device_, AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
   launch(*device_, AddUp<SourceTerms>{dragged_.data(), wall_ranges_.data(), given + walls}, drag);
   launch(*device_, AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls + drag}, damping);
+  launch(*device_, AddUp<SourceTerms>{fielded_.data(), block_ranges_.data(), given + walls + drag + damping}, fields);
   home_.resize(parts_.size());
   parts_.download(home_);
   const auto part = [&]<class T>(std::size_t i, T) {
@@ -378,11 +412,22 @@ void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total
     total.kinetic += one.gained;
   }
   for (std::size_t i = 0; i < damping; ++i) total.damping += part(blocks + walls + drag + i, SourceTerms{}).sum();
+  for (std::size_t i = 0; i < fields; ++i)
+    total.fields += part(blocks + walls + drag + damping + i, SourceTerms{}).sum();
   if (deep == 0) return;
   deep_home_.resize(deep, SourceTerms::none());
   deep_given_.download(deep_home_);
   for (std::size_t i = 0; i < deep; ++i)
     total.colliders[static_cast<std::size_t>(collider_of_group_[i])] += deep_home_[i].sum();
+}
+
+SourceTerms GridVisit::sum_of_blocks(const Buffer<SourceTerms>& numbers) {
+  block_parts_.resize(block_ranges_.size()), block_parts_home_.resize(block_ranges_.size(), SourceTerms::none());
+  launch(*device_, AddUp<SourceTerms>{numbers.data(), block_ranges_.data(), block_parts_.data()}, block_ranges_.size());
+  block_parts_.download(block_parts_home_);
+  SourceTerms sum = SourceTerms::none();
+  for (const SourceTerms& part : block_parts_home_) sum.add(part);
+  return sum;
 }
 
 void GridVisit::add_image_mass(const World<float>& world, Memory& memory, double dt) {

@@ -14,8 +14,8 @@ namespace dreampm::gpu {
 class GridVisit {
  public:
   explicit GridVisit(Device& device);
-  /// True if a device can visit the nodes of this world: the host does where force fields act on
-  /// them, or solids or grains meet colliders that are thin.
+  /// True if a device can visit the nodes of this world: the host does where solids or grains meet
+  /// colliders that are thin.
   static bool takes(const World<float>& world, const Obstacles& obstacles);
 
   /// Must be called after every change of the grid's block list or of the particles' order.
@@ -40,13 +40,15 @@ class GridVisit {
                GridUpdate<float>& host, double dt, bool bodies, GridStats& found);
   /// Adds the sums; `dragged`: those of boundary layers too.
   void add_results(const VisitInput& in, bool dragged, GridStats& total);
+  /// The work of force fields [J], as the nodes move now.
+  double field_work(const VisitInput& in);
   /// As VisitInput::given, of boundary layers in a stage.
   SourceTerms* dragged() { return dragged_.data(); }
   /// The blocks of the grid that matter of both fields reaches.
   SharedNodes shared_nodes(const VisitInput& in) const { return {in, shared_.data(), around_.data(), images_}; }
   std::size_t shared_count() const { return shared_.size(); }
-  /// Ranges of the blocks of the grid, for sums.
-  const Buffer<Range>& block_ranges() const { return block_ranges_; }
+  /// The sum of one number a block of the grid.
+  SourceTerms sum_of_blocks(const Buffer<SourceTerms>& numbers);
 
  private:
   void find_shared(const World<float>& world, const std::vector<StencilBlocks>& reached);
@@ -57,6 +59,8 @@ class GridVisit {
                      double dt, bool bodies, GridStats& found);
   void measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps);
   LayersInput layers(int axis) const;
+  void apply_fields(const VisitInput& in, const World<float>& world, double dt);
+  FieldInput fields() const;
 
   Device* device_;
   bool folds_ = false, gapped_[2] = {};
@@ -73,11 +77,16 @@ class GridVisit {
   Buffer<std::uint8_t> folded_;
   // Sums, the ranges of them that are added up, and what comes of these.
   Buffer<GridTerms> sums_;
-  Buffer<SourceTerms> given_, dragged_, damped_;
+  Buffer<SourceTerms> given_, dragged_, damped_, fielded_;
   Buffer<Range> block_ranges_, wall_ranges_;
   std::vector<int> side_of_range_;
   Buffer<std::byte> parts_;
   std::vector<std::byte> home_;
+  Buffer<SourceTerms> block_parts_;
+  std::vector<SourceTerms> block_parts_home_;
+  // Force fields and what they gave.
+  Buffer<FieldStep> fields_;
+  std::array<Buffer<Vec3<float>>, 2> field_impulses_;
   // Nodes deep inside colliders, and blocks at their surfaces.
   Buffer<DeepBlock> deep_blocks_;
   Buffer<DeepNodes> deep_groups_;

@@ -5,6 +5,7 @@
 
 #include "dreampm/backend/gpu/contact_gaps.h"
 #include "dreampm/backend/gpu/deep_contact.h"
+#include "dreampm/backend/gpu/field_visit.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
 #include "dreampm/backend/gpu/solid_contact.h"
@@ -65,7 +66,7 @@ using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
 /// Those of the grid, and sums.
 using GridKernels =
-    KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep, CopyBlocks,
+    KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep, CopyBlocks,
                MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps, MeasureColliderGaps, FindWallGaps,
                CopyGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>

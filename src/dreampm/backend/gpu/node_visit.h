@@ -73,6 +73,7 @@ struct VisitInput {
   GridTerms* sums;              ///< by block of the grid
   SourceTerms* given;           ///< impulses of walls
   SourceTerms* damped;          ///< impulses of damping, by block; null without damping
+  bool all_wait;                ///< whether all blocks wait, as VisitBlock::waits: force fields come between
 
   DM_FN float speed2_of(const Node<float>& node) const { return dot(velocity(node), velocity(node)); }
 };
@@ -203,7 +204,7 @@ struct BeginVisit {
       sum.finite = sum.finite && sum.mass - sum.mass == 0;
       shared.sum = in.sums[b] = sum;
     });
-    if (!at.waits) BlockBoundaries::finish(in, block, shared, b);
+    if (!at.waits && !in.all_wait) BlockBoundaries::finish(in, block, shared, b);
   }
 
  private:
@@ -239,11 +240,11 @@ struct FinishVisit {
   static constexpr int threads = block_nodes;
   using Shared = BlockBoundaries::Shared;
   VisitInput in;
-  const std::uint32_t* waiting;  ///< blocks of the grid
+  const std::uint32_t* waiting;  ///< blocks of the grid; null: all
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
-    const auto b = static_cast<int>(waiting[block.index()]);
+    const int b = waiting ? static_cast<int>(waiting[block.index()]) : block.index();
     block.each_thread([&](int t) {
       if (t == 0) shared.sum = in.sums[b];
     });

@@ -38,21 +38,11 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
     visit.contact(in, world, memory, obstacles, host, dt, false, stats);
     launch(*device_, EndStage{in, stage}, blocks);
     visit.add_results(in, in.step.skin, stats);
-    sums_.add(std::move(stats), driven_work(visit), factors.kept);
+    sums_.add(std::move(stats), visit.sum_of_blocks(driven_).work, factors.kept);
   }
   found.max_speed = passes.fastest_particle(world);
+  found.fields.work = visit.field_work(visit.input(world, memory, dt, 0));
   return sums_.end(found);
-}
-
-double ViscousStages::driven_work(const GridVisit& visit) {
-  const Buffer<Range>& ranges = visit.block_ranges();
-  driven_parts_.resize(ranges.size());
-  launch(*device_, AddUp<SourceTerms>{driven_.data(), ranges.data(), driven_parts_.data()}, ranges.size());
-  parts_.resize(ranges.size());
-  driven_parts_.download(parts_);
-  double work = 0;
-  for (const SourceTerms& part : parts_) work += part.work;
-  return work;
 }
 
 }  // namespace dreampm::gpu

@@ -14,20 +14,16 @@ class ViscousStages {
       : device_(&device),
         old_{Buffer<Node<float>>(device), Buffer<Node<float>>(device)},
         change_{Buffer<Node<float>>(device), Buffer<Node<float>>(device)},
-        driven_(device),
-        driven_parts_(device) {}
+        driven_(device) {}
   /// As Backend::sub_cycle. `next`: a grid as long as the World's.
   double operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
                     const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next, double dt,
                     GridStats& found);
 
  private:
-  double driven_work(const GridVisit& visit);
-
   Device* device_;
   std::array<Buffer<Node<float>>, 2> old_, change_;  ///< by field
-  Buffer<SourceTerms> driven_, driven_parts_;
-  std::vector<SourceTerms> parts_;
+  Buffer<SourceTerms> driven_;
   StageSums sums_;
 };
 
