@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <utility>
 
 #include <solver/mixed_world.h>
 #include "dreampm/backend/gpu/host_device.h"
@@ -89,11 +90,11 @@ TEST(Gpu, TheOrderOfThreadsDoesNotChangeABit) {
     std::vector<std::vector<ParticleSeed>> seeds;
     const World<float> world = world_of(name, seeds);
     std::vector<std::uint64_t> hashes;
-    for (const ThreadOrder order : {ThreadOrder::rising, ThreadOrder::falling, ThreadOrder::scattered})
-      for (const int threads : {1, 3}) {
-        const ThreadLimit limit(threads);
-        hashes.push_back(state_hash(after<float>(world, seeds, *host_gpu(order), 80)));
-      }
+    for (const auto& [order, threads] : {std::pair{ThreadOrder::rising, 1}, std::pair{ThreadOrder::falling, 3},
+                                         std::pair{ThreadOrder::scattered, 2}}) {
+      const ThreadLimit limit(threads);
+      hashes.push_back(state_hash(after<float>(world, seeds, *host_gpu(order), 80)));
+    }
     for (const auto h : hashes) EXPECT_EQ(h, hashes[0]) << name;
   }
 }

@@ -52,11 +52,13 @@ class ThinWalls {
     return Node<R>{static_cast<R>(d.normal.x), static_cast<R>(d.normal.y), static_cast<R>(d.normal.z),
                    static_cast<R>(d.distance)};
   }
-  /// Fills columns for the particles of a block, [begin, end): at(u), or `no_distance` in the last.
+  /// The same, with `no_distance` where the splines will do.
+  Node<float> or_none(const Vec3<float>& u) const { return at(u).value_or(Node<float>{0, 0, 0, no_distance}); }
+  /// Fills columns for the particles of a block, [begin, end), with or_none(u).
   template <class Columns>
   void fill(const std::array<const float*, 3>& u, std::size_t begin, std::size_t end, Columns& to) const {
     for (std::size_t p = begin; p < end; ++p) {
-      const Node<float> d = at(Vec3<float>{u[0][p], u[1][p], u[2][p]}).value_or(Node<float>{0, 0, 0, no_distance});
+      const Node<float> d = or_none({u[0][p], u[1][p], u[2][p]});
       to[0][p] = d.x, to[1][p] = d.y, to[2][p] = d.z, to[3][p] = d.m;
     }
   }

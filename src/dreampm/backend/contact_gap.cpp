@@ -138,8 +138,9 @@ void ContactGaps::prepare(const World<R>& world, const Obstacles& obstacles) {
   });
 }
 
-bool ContactGaps::reaches_colliders(const NearBlock& near_block) const {
-  return near_block.colliders && !(near_nodes_[near_block.nodes].nearest > out_of_reach);
+bool ContactGaps::reaches_colliders(const NearBlock& near_block, const Obstacles& obstacles) const {
+  return near_block.colliders && (!(near_nodes_[near_block.nodes].nearest > out_of_reach) ||
+                                  ThinWalls(obstacles, near_block.stencil_blocks).any());
 }
 
 void ContactGaps::set_gaps(std::int32_t number, const float* gaps) {

@@ -109,8 +109,8 @@ class ContactGaps {
   std::size_t gap_count() const { return cell_gaps_.size(); }
   /// By grid block and side: a number of `wall_nodes`; -1: none.
   const std::vector<std::array<std::int32_t, 6>>& walls_of() const { return walls_of_; }
-  /// True if particles of that block may be in reach of colliders that are not thin.
-  bool reaches_colliders(const NearBlock& near_block) const;
+  /// True if particles of that block may be in reach of colliders.
+  bool reaches_colliders(const NearBlock& near_block, const Obstacles& obstacles) const;
   /// Takes over what was measured there: the gaps of that number [cells], block_nodes a side.
   void set_gaps(std::int32_t number, const float* gaps);
 

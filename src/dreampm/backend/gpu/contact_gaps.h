@@ -8,6 +8,7 @@
 #include "dreampm/backend/gpu/block.h"
 #include "dreampm/backend/gpu/block_particles.h"
 #include "dreampm/backend/node_terms.h"
+#include "dreampm/backend/pass_limits.h"
 #include "dreampm/backend/wall_distance.h"
 
 namespace dreampm::gpu {
@@ -91,13 +92,15 @@ struct MeasureGaps {
   }
 };
 
-/// The gaps before colliders, by the mean of their distance over a particle's stencil.
+/// The gaps before colliders, by the mean of their distance over a particle's stencil, or by its
+/// own from thin ones.
 struct MeasureColliderGaps {
   static constexpr int threads = 128;
   struct Shared {};
   GapInput in;
   const std::uint32_t* near;     ///< blocks of particles
   const Node<float>* clearance;  ///< by node of the grid: the gradient of the distance, and that [cells]
+  const float* distance[4];      ///< as PassInput
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
@@ -105,10 +108,12 @@ struct MeasureColliderGaps {
     block.each_thread([&](int t) {
       each_particle<threads>(in.block_start, b, t, [&](std::uint32_t p) {
         const Vec3<float> u = in.place(p);
-        const Node<float> mean = clearance_at(b, make_stencil(u));
-        if (!(mean.m < static_cast<float>(kernel_reach))) return;
-        in.lower<Block>(b, side_like(Vec3<float>{mean.x, mean.y, mean.z}),
-                        {first_node(u.x), first_node(u.y), first_node(u.z)}, mean.m);
+        const Node<float> away = distance[0] && distance[3][p] < no_distance
+                                     ? Node<float>{distance[0][p], distance[1][p], distance[2][p], distance[3][p]}
+                                     : clearance_at(b, make_stencil(u));
+        if (!(away.m < static_cast<float>(kernel_reach))) return;
+        in.lower<Block>(b, side_like(Vec3<float>{away.x, away.y, away.z}),
+                        {first_node(u.x), first_node(u.y), first_node(u.z)}, away.m);
       });
     });
   }

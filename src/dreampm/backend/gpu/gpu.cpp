@@ -1,7 +1,6 @@
 #include "dreampm/backend/gpu/gpu.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
 #include <string>
@@ -14,6 +13,7 @@
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/backend/gpu/thin_distances.h"
 #include "dreampm/backend/gpu/viscous_stages.h"
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/error.h"
@@ -35,7 +35,8 @@ class Gpu final : public Backend<float> {
         passes_(*device_, memory_),
         sort_(*device_),
         visit_(*device_),
-        stages_(*device_) {}
+        stages_(*device_),
+        thin_(*device_) {}
   std::string_view name() const override { return name_; }
   std::string_view isa() const override { return isa_; }
 
@@ -84,49 +85,26 @@ class Gpu final : public Backend<float> {
 
   GridStats grid_update(World<float>& world, double dt) override {
     check_whole();
-    if (gpu::GridVisit::takes(world, obstacles_)) {
-      nodes_to_device(world);
-      home_ = without(home_, MatterFields::nodes);
-      return visit_(world, memory_, obstacles_, update_, dt);
-    }
-    change_nodes_at_home(world);
-    // Gaps are measured from the places of solids and grains.
-    if (update_.gaps().has(world, 0) || update_.gaps().has(world, 1)) bring_home(world, MatterFields::position);
-    return update_(world, obstacles_, dt);
+    visit_nodes_there(world);
+    if (visit_.gapped()) thin_.measure(world, memory_, obstacles_, stencil_blocks_);
+    return visit_(world, memory_, obstacles_, update_, dt, thin_.any());
   }
 
   double sub_cycle(World<float>& world, double dt, GridStats& found) override {
     fit_grid(world, next_);
-    if (gpu::GridVisit::takes(world, obstacles_)) {
-      nodes_to_device(world);
-      home_ = without(home_, MatterFields::nodes);
-      return stages_(world, memory_, visit_, passes_, obstacles_, update_, next_, dt, found);
-    }
-    change_nodes_at_home(world);
-    const auto lend_velocities = [&] {
-      for (std::size_t f = 0; f < 2; ++f) memory_.nodes[of_field(gpu::nodes, f)].upload(world.grid.field(f));
-    };
-    return update_.sub_cycle(
-        world, obstacles_, dt, found, next_,
-        [&] {
-          lend_velocities();
-          passes_.find_viscous_forces(world, dt, next_);
-          for (std::size_t f = 0; f < 2; ++f) memory_.momenta[f].download(next_.field(f));
-        },
-        [&] {
-          lend_velocities();
-          return passes_.fastest_particle(world);
-        });
+    visit_nodes_there(world);
+    return stages_(world, memory_, visit_, passes_, obstacles_, update_, next_, dt, found);
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {
     fit_grid(world, next_);
     nodes_to_device(world);
     visit_.add_image_mass(world, memory_, dt);
-    if (obstacles_.any_thin()) upload_distances(world);
+    thin_.measure(world, memory_, obstacles_, stencil_blocks_);
     upload_base(world);
-    const PassStats total = passes_.g2p2g(world, dt, dt_next, motion != nullptr, obstacles_.any_thin(), next_);
+    const PassStats total = passes_.g2p2g(world, dt, dt_next, motion != nullptr, thin_.any(), next_);
     if (!total.finite) return total;
+    thin_.outdate();
     swap_fields(world.grid, next_);
     home_ = includes(home_, MatterFields::id) ? MatterFields::id : MatterFields::none;
     if (motion) passes_.download_motion(world, *motion);
@@ -151,6 +129,7 @@ class Gpu final : public Backend<float> {
     const Change change(*this);
     memory_.resize_sets(world.sets.size());
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
+      if (includes(fields, MatterFields::position)) thin_.outdate();
       if (includes(fields, MatterFields::position))
         memory_.sets[s].upload_position(world.sets[s], world.particle_blocks.size());
       if (includes(fields, MatterFields::state)) memory_.sets[s].upload_state(world.sets[s]);
@@ -227,20 +206,20 @@ class Gpu final : public Backend<float> {
   }
   /// The host gave matter to the nodes: the next pass counts by what its blocks hold.
   static void forget_heaviest(World<float>& world) { world.scatter_bounds[1] = 0; }
-  /// Brings the nodes home, where they will change.
-  void change_nodes_at_home(World<float>& world) {
-    bring_home(world, MatterFields::nodes);
-    nodes_there_ = false;
-  }
   void nodes_to_device(World<float>& world) {
     if (nodes_there_) return;
     for (std::size_t t = 0; t < targets; ++t) memory_.nodes[t].upload(gpu::host_field(world.grid, t));
     nodes_there_ = true;
   }
+  void visit_nodes_there(World<float>& world) {
+    nodes_to_device(world);
+    home_ = without(home_, MatterFields::nodes);
+  }
 
   // ---- what follows from the lists of blocks
 
   void refresh(const World<float>& world) {
+    memory_.resize_sets(world.sets.size());
     obstacles_.prepare(world);
     find_stencil_blocks(world, stencil_blocks_);
     update_.prepare(world, obstacles_);
@@ -263,6 +242,7 @@ class Gpu final : public Backend<float> {
     }
     memory_.walls.upload(walls), memory_.beside.upload(beside), memory_.apart.upload(apart);
     memory_.clearance.upload(obstacles_.clearance());
+    thin_.prepare(world, memory_, obstacles_, stencil_blocks_);
     based_ = false;
   }
 
@@ -277,23 +257,6 @@ class Gpu final : public Backend<float> {
     memory_.base.upload(base);
     based_ = true;
   }
-  /// Distances from colliders that are too thin for the splines between the nodes.
-  void upload_distances(World<float>& world) {
-    bring_home(world, MatterFields::position);
-    for (std::size_t s = 0; s < world.sets.size(); ++s) {
-      const ParticleSet<float>& set = world.sets[s];
-      std::array<std::vector<float>, 4> distance;
-      for (auto& column : distance) column.assign(set.size(), no_distance);
-      if (set.size() > 0)
-        parallel_for(world.particle_blocks.size(), 8, [&](std::size_t b) {
-          const ThinWalls thin(obstacles_, stencil_blocks_[b]);
-          if (thin.any())
-            thin.fill({set.u[0].data(), set.u[1].data(), set.u[2].data()}, set.block_start[b], set.block_start[b + 1],
-                      distance);
-        });
-      for (std::size_t c = 0; c < 4; ++c) memory_.sets[s].distance[c].upload(distance[c]);
-    }
-  }
 
   std::unique_ptr<gpu::Device> device_;
   std::string name_, isa_;
@@ -305,6 +268,7 @@ class Gpu final : public Backend<float> {
   gpu::ParticleSort sort_;
   gpu::GridVisit visit_;
   gpu::ViscousStages stages_;
+  gpu::ThinDistances thin_;
   std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
   GridFields<float> next_;                     ///< its block list stays empty
   bool based_ = false;                         ///< whether Memory::base is current

@@ -69,11 +69,6 @@ GridVisit::GridVisit(Device& device)
       asked_(device),
       asked_gaps_(device) {}
 
-bool GridVisit::takes(const World<float>& world, const Obstacles& obstacles) {
-  const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
-  return !(solid && obstacles.any_thin());
-}
-
 void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
                         const std::vector<StencilBlocks>& reached) {
   find_shared(world, reached);
@@ -82,7 +77,7 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
 }
 
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
-  find_gaps(world, host);
+  find_gaps(world, obstacles, host);
   find_deep(world, obstacles);
 }
 
@@ -145,13 +140,13 @@ void GridVisit::find_deep(const World<float>& world, const Obstacles& obstacles)
   deep_given_.resize(groups.size());
 }
 
-void GridVisit::find_gaps(const World<float>& world, GridUpdate<float>& host) {
+void GridVisit::find_gaps(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
   const ContactGaps& gaps = host.gaps();
   for (std::size_t f = 0; f < 2; ++f) gapped_[f] = gaps.has(world, f);
   std::vector<NearWalls> near;
   std::vector<std::uint32_t> colliders;
   for (const ContactGaps::NearBlock& b : gaps.near_blocks()) {
-    if (gaps.reaches_colliders(b)) colliders.push_back(b.block);
+    if (gaps.reaches_colliders(b, obstacles)) colliders.push_back(b.block);
     if (std::all_of(b.plane.begin(), b.plane.end(), [](std::int8_t plane) { return plane < 0; })) continue;
     NearWalls& one = near.emplace_back(NearWalls{b.block, {}});
     std::copy(b.plane.begin(), b.plane.end(), one.plane);
@@ -239,10 +234,10 @@ void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacl
 }
 
 GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obstacles& obstacles,
-                                GridUpdate<float>& host, double dt) {
+                                GridUpdate<float>& host, double dt, bool thin) {
   GridStats total;
   total.colliders.resize(world.colliders.size());
-  if (gapped_[0] || gapped_[1]) measure_gaps(world, memory, host.gaps());
+  if (gapped()) measure_gaps(world, memory, host.gaps(), thin);
   VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
   in.all_wait = !world.fields.empty();
   launch(*device_, BeginVisit{in}, blocks_.size());
@@ -326,7 +321,7 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
   copy_there(true);
 }
 
-void GridVisit::measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps) {
+void GridVisit::measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin) {
   launch(*device_, ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
     const ParticleSet<float>& set = world.sets[s];
@@ -339,7 +334,9 @@ void GridVisit::measure_gaps(const World<float>& world, Memory& memory, ContactG
                       gaps_.data(),
                       static_cast<float>(ColliderContact::contact_gap * set.spacing() / world.dx)};
     launch(*device_, MeasureGaps{in, near_.data()}, near_.size());
-    launch(*device_, MeasureColliderGaps{in, near_colliders_.data(), memory.clearance.data()}, near_colliders_.size());
+    MeasureColliderGaps before{in, near_colliders_.data(), memory.clearance.data(), {}};
+    for (std::size_t c = 0; thin && c < 4; ++c) before.distance[c] = m.distance[c].data();
+    launch(*device_, before, near_colliders_.size());
   }
   launch(*device_,
          FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,

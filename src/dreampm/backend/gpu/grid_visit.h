@@ -14,20 +14,19 @@ namespace dreampm::gpu {
 class GridVisit {
  public:
   explicit GridVisit(Device& device);
-  /// True if a device can visit the nodes of this world: the host does where solids or grains meet
-  /// colliders that are thin.
-  static bool takes(const World<float>& world, const Obstacles& obstacles);
-
   /// Must be called after every change of the grid's block list or of the particles' order.
   /// `reached`: by block of particles.
   void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
                const std::vector<StencilBlocks>& reached);
   /// Must be called after colliders have moved, if nothing else changed.
   void colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
-  /// As Backend::grid_update. Contact with surfaces of colliders is the host's: the blocks of nodes
-  /// that it looks at go there and come back, and are overwritten in the World.
+  /// True if any matter has gaps before walls or colliders.
+  bool gapped() const { return gapped_[0] || gapped_[1]; }
+  /// As Backend::grid_update. `thin`: whether SetMemory::distance is to be read. Contact with
+  /// surfaces of colliders is the host's: the blocks of nodes that it looks at go there and come
+  /// back, and are overwritten in the World.
   GridStats operator()(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                       double dt);
+                       double dt, bool thin);
   /// As MirrorWalls::add_image_mass.
   void add_image_mass(const World<float>& world, Memory& memory, double dt);
 
@@ -54,10 +53,10 @@ class GridVisit {
   void find_shared(const World<float>& world, const std::vector<StencilBlocks>& reached);
   void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
   void find_deep(const World<float>& world, const Obstacles& obstacles);
-  void find_gaps(const World<float>& world, GridUpdate<float>& host);
+  void find_gaps(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
   void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
                      double dt, bool bodies, GridStats& found);
-  void measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps);
+  void measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin);
   LayersInput layers(int axis) const;
   void apply_fields(const VisitInput& in, const World<float>& world, double dt);
   FieldInput fields() const;

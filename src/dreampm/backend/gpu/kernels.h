@@ -8,6 +8,7 @@
 #include "dreampm/backend/gpu/field_visit.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
+#include "dreampm/backend/gpu/near_particles.h"
 #include "dreampm/backend/gpu/solid_contact.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/stage_visit.h"
@@ -32,7 +33,8 @@ struct KernelList {
   static constexpr int number_of() {
     int n = 0;
     static_cast<void>(((std::is_same_v<One, K> || (++n, false)) || ...));
-    static_assert((std::is_same_v<One, K> || ...), "no kernel of the list");
+    constexpr bool known = (std::is_same_v<One, K> || ...);
+    static_assert(known, "no kernel of the list");
     return n;
   }
   /// Calls f.template operator()<K>() for each in order.
@@ -66,9 +68,10 @@ using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
 /// Those of the grid, and sums.
 using GridKernels =
-    KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep, CopyBlocks,
-               MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps, MeasureColliderGaps, FindWallGaps,
-               CopyGaps, AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+    KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass,
+               MeetDeep, CopyBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
+               MeasureColliderGaps, FindWallGaps, CopyGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
+               AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
     typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;

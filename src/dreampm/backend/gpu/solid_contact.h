@@ -45,9 +45,11 @@ struct SharedNodes {
         shared.solid.mass[i] = near.mass(SolidMasses<float>::place(i), [&](const Vec3i& at) {
           const std::int32_t b = neighbors[block_around(at)];
           constexpr int last = block_width - 1;
-          return b < 0 ? 0.0f
-                       : in.grid.field[1][std::int64_t{b} * block_nodes + node_index(at.x & last, at.y & last, at.z & last)]
-                             .m;
+          return b < 0
+                     ? 0.0f
+                     : in.grid
+                           .field[1][std::int64_t{b} * block_nodes + node_index(at.x & last, at.y & last, at.z & last)]
+                           .m;
         });
     });
     block.each_thread([&](int t) {
