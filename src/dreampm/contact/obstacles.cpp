@@ -12,7 +12,6 @@
 namespace dreampm {
 namespace {
 
-constexpr Node<float> far_away{0, 0, 0, static_cast<float>(ColliderContact::clearance_reach)};
 /// Cells from the middle of a block: half its diagonal and the reach of a kernel.
 constexpr double block_reach = 2.6 + 1.5;
 

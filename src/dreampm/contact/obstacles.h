@@ -49,6 +49,8 @@ class Obstacles {
   }
   /// True if a collider is near that grid block: within reach of particles that reach its nodes.
   bool near(std::size_t grid_block) const { return by_block_[grid_block] != nullptr; }
+  /// The clearance of nodes where no collider is near.
+  static constexpr Node<float> far_away{0, 0, 0, static_cast<float>(ColliderContact::clearance_reach)};
   /// Returns for the nodes of the grid the distance from the nearest collider [cells], negative
   /// inside, as the last number, after its gradient; empty without colliders.
   const Nodes<float>& clearance() const { return clearance_; }

@@ -95,4 +95,17 @@ struct CopyBlocks {
   }
 };
 
+/// Sets all nodes of blocks.
+struct FillBlocks {
+  static constexpr int threads = block_nodes;
+  struct Shared {};
+  Node<float>* grid;
+  Node<float> with;
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared&) const {
+    block.each_thread([&](int t) { grid[std::int64_t{block.index()} * block_nodes + t] = with; });
+  }
+};
+
 }  // namespace dreampm::gpu

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "dreampm/backend/common.h"
+#include "dreampm/backend/gpu/collider_nodes.h"
 #include "dreampm/backend/gpu/grid_visit.h"
 #include "dreampm/backend/gpu/memory_need.h"
 #include "dreampm/backend/gpu/particle_passes.h"
@@ -17,7 +19,6 @@
 #include "dreampm/backend/gpu/viscous_stages.h"
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/error.h"
-#include "dreampm/base/parallel.h"
 
 namespace dreampm {
 namespace {
@@ -36,7 +37,8 @@ class Gpu final : public Backend<float> {
         sort_(*device_),
         visit_(*device_),
         stages_(*device_),
-        thin_(*device_) {}
+        thin_(*device_),
+        collider_nodes_(*device_) {}
   std::string_view name() const override { return name_; }
   std::string_view isa() const override { return isa_; }
 
@@ -69,7 +71,10 @@ class Gpu final : public Backend<float> {
     obstacles_.prepare(world);
     update_.colliders_moved(world, obstacles_);
     visit_.colliders_moved(world, obstacles_, update_);
-    upload_obstacles(world);
+    if (!obstacles_.changed()) return;
+    collider_nodes_.colliders_moved(world, memory_, obstacles_);
+    find_beside(world);
+    thin_.prepare(world, memory_, obstacles_, stencil_blocks_);
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
@@ -101,7 +106,6 @@ class Gpu final : public Backend<float> {
     nodes_to_device(world);
     visit_.add_image_mass(world, memory_, dt);
     thin_.measure(world, memory_, obstacles_, stencil_blocks_);
-    upload_base(world);
     const PassStats total = passes_.g2p2g(world, dt, dt_next, motion != nullptr, thin_.any(), next_);
     if (!total.finite) return total;
     thin_.outdate();
@@ -231,31 +235,23 @@ class Gpu final : public Backend<float> {
     memory_.sources.upload(stencil_blocks_, world.grid.blocks.size());
     passes_.prepare(blocks);
     visit_.prepare(world, obstacles_, update_, stencil_blocks_);
-    upload_obstacles(world);
-  }
-  void upload_obstacles(const World<float>& world) {
-    std::vector<BlockWalls<float>> walls(world.particle_blocks.size());
-    std::vector<std::uint32_t> beside, apart;
-    for (std::size_t b = 0; b < walls.size(); ++b) {
-      walls[b] = block_walls(world, world.particle_blocks[b], colliders_near(obstacles_, stencil_blocks_[b]));
-      (walls[b].colliders ? beside : apart).push_back(static_cast<std::uint32_t>(b));
-    }
-    memory_.walls.upload(walls), memory_.beside.upload(beside), memory_.apart.upload(apart);
-    memory_.clearance.upload(obstacles_.clearance());
+    collider_nodes_.prepare(world, memory_, obstacles_);
+    beside_.reset();
+    find_beside(world);
     thin_.prepare(world, memory_, obstacles_, stencil_blocks_);
-    based_ = false;
   }
-
-  /// The colliders' share of the mixture, with which the grid of the step to come begins.
-  void upload_base(const World<float>& world) {
-    if (based_) return;
-    Nodes<float>& base = next_.mixture;
-    std::fill(base.begin(), base.end(), Node<float>{});
-    if (!base.empty() && obstacles_.any())
-      parallel_for(world.grid.blocks.size(), 32,
-                   [&](std::size_t b) { add_colliders(world, obstacles_, b, base.data() + b * block_nodes); });
-    memory_.base.upload(base);
-    based_ = true;
+  /// Parts the blocks of particles by whether colliders are near.
+  void find_beside(const World<float>& world) {
+    const std::size_t blocks = world.particle_blocks.size();
+    std::vector<std::uint32_t> beside, apart;
+    for (std::uint32_t b = 0; b < blocks; ++b)
+      (colliders_near(obstacles_, stencil_blocks_[b]) ? beside : apart).push_back(b);
+    if (beside_ == beside) return;
+    std::vector<BlockWalls<float>> walls(blocks);
+    for (const bool near : {false, true})
+      for (const std::uint32_t b : near ? beside : apart) walls[b] = block_walls(world, world.particle_blocks[b], near);
+    memory_.walls.upload(walls), memory_.beside.upload(beside), memory_.apart.upload(apart);
+    beside_ = std::move(beside);
   }
 
   std::unique_ptr<gpu::Device> device_;
@@ -269,9 +265,10 @@ class Gpu final : public Backend<float> {
   gpu::GridVisit visit_;
   gpu::ViscousStages stages_;
   gpu::ThinDistances thin_;
-  std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles
-  GridFields<float> next_;                     ///< its block list stays empty
-  bool based_ = false;                         ///< whether Memory::base is current
+  gpu::ColliderNodes collider_nodes_;
+  std::vector<StencilBlocks> stencil_blocks_;         ///< by block of particles
+  GridFields<float> next_;                            ///< its block list stays empty
+  std::optional<std::vector<std::uint32_t>> beside_;  ///< blocks of particles with colliders near, as Memory::beside
   /// The parts of the matter of which the World's arrays are current, and whether the device's
   /// nodes are. Its particles always are.
   MatterFields home_ = MatterFields::all;

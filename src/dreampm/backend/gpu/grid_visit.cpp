@@ -79,6 +79,7 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
   find_gaps(world, obstacles, host);
   find_deep(world, obstacles);
+  surface_blocks_.upload(host.surface_blocks());
 }
 
 /// Finds the blocks that matter of both fields reaches, and what lies around them.
@@ -296,7 +297,6 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
                               double dt, bool bodies, GridStats& found) {
   const std::vector<std::uint32_t>& blocks = host.surface_blocks();
   if (blocks.empty()) return;
-  surface_blocks_.upload(blocks);
   const std::size_t size = blocks.size() * block_nodes, fields = world.grid.solids.empty() ? 1 : 2;
   copies_.resize(fields * size), copies_home_.resize(copies_.size());
   const auto copy_there = [&](bool back) {

@@ -69,7 +69,7 @@ using SortKernels =
 /// Those of the grid, and sums.
 using GridKernels =
     KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass,
-               MeetDeep, CopyBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
+               MeetDeep, CopyBlocks, FillBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
                MeasureColliderGaps, FindWallGaps, CopyGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>

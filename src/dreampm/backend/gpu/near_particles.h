@@ -48,7 +48,8 @@ struct CopyPlaces {
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
     block.each_thread([&](int t) {
-      near.each<threads>(block.index(), t, [&](std::uint32_t p, std::uint32_t i) { to[i] = {u[0][p], u[1][p], u[2][p]}; });
+      near.each<threads>(block.index(), t,
+                         [&](std::uint32_t p, std::uint32_t i) { to[i] = {u[0][p], u[1][p], u[2][p]}; });
     });
   }
 };

@@ -47,8 +47,7 @@ void ThinDistances::measure(const World<float>& world, Memory& memory, const Obs
     places_.download(places_home_);
     parallel_for(near_.size(), 1, [&](std::size_t i) {
       const ThinWalls thin(obstacles, reached[near_[i]]);
-      for (std::uint32_t p = starts[i]; p < starts[i + 1]; ++p)
-        distances_home_[p] = thin.or_none(places_home_[p]);
+      for (std::uint32_t p = starts[i]; p < starts[i + 1]; ++p) distances_home_[p] = thin.or_none(places_home_[p]);
     });
     distances_.upload(distances_home_);
     SpreadDistances spread{near, distances_.data(), {}};
