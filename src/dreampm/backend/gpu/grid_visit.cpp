@@ -45,29 +45,17 @@ GridVisit::GridVisit(Device& device)
       given_(device),
       dragged_(device),
       damped_(device),
-      fielded_(device),
       block_ranges_(device),
       wall_ranges_(device),
       parts_(device),
-      block_parts_(device),
       fields_(device),
-      field_impulses_{Buffer<Vec3<float>>(device), Buffer<Vec3<float>>(device)},
       deep_blocks_(device),
       deep_groups_(device),
       deep_nodes_(device),
       surfaces_(device),
-      deep_given_(device),
       surface_blocks_(device),
       copies_(device),
-      near_(device),
-      near_colliders_(device),
-      planes_(device),
-      gaps_of_(device),
-      walls_of_(device),
-      gaps_(device),
-      gap_(device),
-      asked_(device),
-      asked_gaps_(device) {}
+      gaps_(device) {}
 
 void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
                         const std::vector<StencilBlocks>& reached) {
@@ -77,7 +65,7 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
 }
 
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
-  find_gaps(world, obstacles, host);
+  gaps_.prepare(world, obstacles, host);
   find_deep(world, obstacles);
   surface_blocks_.upload(host.surface_blocks());
 }
@@ -138,38 +126,6 @@ void GridVisit::find_deep(const World<float>& world, const Obstacles& obstacles)
     surfaces.push_back({c.contact(), {friction(0), friction(1)}});
   }
   deep_blocks_.upload(blocks), deep_groups_.upload(groups), deep_nodes_.upload(nodes), surfaces_.upload(surfaces);
-  deep_given_.resize(groups.size());
-}
-
-void GridVisit::find_gaps(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
-  const ContactGaps& gaps = host.gaps();
-  for (std::size_t f = 0; f < 2; ++f) gapped_[f] = gaps.has(world, f);
-  std::vector<NearWalls> near;
-  std::vector<std::uint32_t> colliders;
-  for (const ContactGaps::NearBlock& b : gaps.near_blocks()) {
-    if (gaps.reaches_colliders(b, obstacles)) colliders.push_back(b.block);
-    if (std::all_of(b.plane.begin(), b.plane.end(), [](std::int8_t plane) { return plane < 0; })) continue;
-    NearWalls& one = near.emplace_back(NearWalls{b.block, {}});
-    std::copy(b.plane.begin(), b.plane.end(), one.plane);
-  }
-  std::vector<WallPlane> planes;
-  for (const ContactGaps::WallNodes& w : gaps.wall_nodes()) {
-    WallPlane& one = planes.emplace_back(WallPlane{{}, w.side, w.plane});
-    std::copy(w.from.begin(), w.from.end(), one.from);
-  }
-  std::vector<std::int32_t> walls_of;
-  for (const auto& of_block : gaps.walls_of()) walls_of.insert(walls_of.end(), of_block.begin(), of_block.end());
-  asked_home_.clear();
-  if (!colliders.empty()) {
-    std::vector<std::uint32_t> blocks;
-    host.find_gap_blocks(blocks);
-    for (const std::uint32_t b : blocks)
-      if (gaps.gaps_of()[b] >= 0) asked_home_.push_back(gaps.gaps_of()[b]);
-  }
-  near_.upload(near), near_colliders_.upload(colliders), planes_.upload(planes);
-  gaps_of_.upload(gaps.gaps_of()), walls_of_.upload(walls_of), asked_.upload(asked_home_);
-  gaps_.resize(gaps.gap_count() * block_gaps);
-  gap_.resize(planes.size() * plane_nodes);
 }
 
 /// Every block at a wall and every layer of images writes its impulses to a place of its own; those
@@ -238,59 +194,37 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
                                 GridUpdate<float>& host, double dt, bool thin) {
   GridStats total;
   total.colliders.resize(world.colliders.size());
-  if (gapped()) measure_gaps(world, memory, host.gaps(), thin);
+  gaps_.measure(world, memory, host.gaps(), thin);
   VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
   in.all_wait = !world.fields.empty();
   launch(*device_, BeginVisit{in}, blocks_.size());
-  apply_fields(in, world, dt);
-  contact(in, world, memory, obstacles, host, dt, true, total);
-  if (in.all_wait) launch(*device_, FieldWork{in, fields()}, blocks_.size());
-  add_results(in, false, total);
+  fields_.apply(in, world, dt);
+  contact(in, nullptr, world, memory, obstacles, host, dt, total);
+  fields_.find_work(in);
+  add_results(in, nullptr, total);
   return total;
 }
 
-void GridVisit::contact(const VisitInput& in, World<float>& world, Memory& memory, const Obstacles& obstacles,
-                        GridUpdate<float>& host, double dt, bool bodies, GridStats& found) {
-  meet_surfaces(world, memory, obstacles, host, dt, bodies, found);
+void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<float>& world, Memory& memory,
+                        const Obstacles& obstacles, GridUpdate<float>& host, double dt, GridStats& found) {
+  lay_parts(in, stage);
+  meet_surfaces(world, memory, obstacles, host, dt, !stage, found);
   const auto folded = [&](int axis) {
     return folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes;
   };
   for (int axis = 2; folds_ && axis >= 0; --axis)
     launch(*device_, FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
   launch(*device_, MeetSolids{shared_nodes(in)}, shared_count());
-  launch(
-      *device_,
-      MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(), deep_given_.data()},
-      deep_blocks_.size());
+  launch(*device_,
+         MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(),
+                  there<SourceTerms>(of_deep)},
+         deep_blocks_.size());
   if (in.all_wait)
     launch(*device_, FinishVisit{in, nullptr}, blocks_.size());
   else
     launch(*device_, FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
     launch(*device_, ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
-}
-
-void GridVisit::apply_fields(const VisitInput& in, const World<float>& world, double dt) {
-  std::vector<FieldStep> steps;
-  for (const auto& one : FieldSteps<float>(world, dt)) steps.emplace_back(one.step, one.box);
-  fields_.upload(steps);
-  if (steps.empty()) return;
-  fielded_.resize(blocks_.size());
-  for (std::size_t f = 0; f < 2; ++f) field_impulses_[f].resize(world.grid.field(f).size());
-  launch(*device_, ApplyFields{in, fields()}, blocks_.size());
-}
-
-FieldInput GridVisit::fields() const {
-  return {fields_.data(),
-          static_cast<std::int32_t>(fields_.size()),
-          {field_impulses_[0].data(), field_impulses_[1].data()},
-          fielded_.data()};
-}
-
-double GridVisit::field_work(const VisitInput& in) {
-  if (fields_.size() == 0) return 0;
-  launch(*device_, FieldWork{in, fields()}, blocks_.size());
-  return sum_of_blocks(fielded_).work;
 }
 
 void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -321,35 +255,6 @@ void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacl
   copy_there(true);
 }
 
-void GridVisit::measure_gaps(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin) {
-  launch(*device_, ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
-  for (std::size_t s = 0; s < world.sets.size(); ++s) {
-    const ParticleSet<float>& set = world.sets[s];
-    if (set.liquid || set.size() == 0) continue;
-    const SetMemory& m = memory.sets[s];
-    const GapInput in{{m.now.u[0].data(), m.now.u[1].data(), m.now.u[2].data()},
-                      m.block_start.data(),
-                      memory.stencil_blocks.data(),
-                      gaps_of_.data(),
-                      gaps_.data(),
-                      static_cast<float>(ColliderContact::contact_gap * set.spacing() / world.dx)};
-    launch(*device_, MeasureGaps{in, near_.data()}, near_.size());
-    MeasureColliderGaps before{in, near_colliders_.data(), memory.clearance.data(), {}};
-    for (std::size_t c = 0; thin && c < 4; ++c) before.distance[c] = m.distance[c].data();
-    launch(*device_, before, near_colliders_.size());
-  }
-  launch(*device_,
-         FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,
-                      gap_.data()},
-         (planes_.size() + FindWallGaps::at_once - 1) / FindWallGaps::at_once);
-  if (asked_home_.empty()) return;
-  asked_gaps_.resize(asked_home_.size() * block_gaps), asked_gaps_home_.resize(asked_gaps_.size());
-  launch(*device_, CopyGaps{asked_.data(), gaps_.data(), asked_gaps_.data()}, asked_home_.size());
-  asked_gaps_.download(asked_gaps_home_);
-  for (std::size_t i = 0; i < asked_home_.size(); ++i)
-    gaps.set_gaps(asked_home_[i], asked_gaps_home_.data() + i * block_gaps);
-}
-
 VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt, double part) {
   VisitInput in{};
   in.step = node_constants(world, dt, part);
@@ -360,7 +265,7 @@ VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt
   for (std::size_t f = 0; f < 2; ++f) {
     const double share = in.grid.velocity_old[f] ? world.kept_share(f) : 0;
     in.unweigh[f] = static_cast<float>(1 / share);
-    if (gapped_[f]) in.gaps[f] = {walls_of_.data(), gap_.data()};
+    in.gaps[f] = gaps_.pointers(f);
   }
   in.places = {world.origin, world.dx, world.low};
   in.blocks = blocks_.data(), in.entries = entries_.data();
@@ -374,57 +279,63 @@ LayersInput GridVisit::layers(int axis) const {
   return {layers_.data() + begin, static_cast<std::int32_t>(end - begin)};
 }
 
-void GridVisit::add_results(const VisitInput& in, bool dragged, GridStats& total) {
-  // All sums come home at once.
-  const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size(), deep = deep_given_.size(),
-                    damping = in.damped ? blocks : 0, drag = dragged ? walls : 0, fields = in.all_wait ? blocks : 0;
+void GridVisit::lay_parts(const VisitInput& in, const StageInput* stage) {
+  const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size();
+  const std::array<std::size_t, parts> sizes{blocks,
+                                             walls,
+                                             stage && stage->dragged ? walls : 0,
+                                             in.damped ? blocks : 0,
+                                             in.all_wait ? blocks : 0,
+                                             stage ? blocks : 0,
+                                             collider_of_group_.size()};
+  for (std::size_t p = 0; p < parts; ++p) parts_at_[p + 1] = parts_at_[p] + sizes[p];
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));
-  parts_.resize((blocks + walls + drag + damping + fields) * sizeof(GridTerms));
-  auto* const grid = reinterpret_cast<GridTerms*>(parts_.data());
-  auto* const given = reinterpret_cast<SourceTerms*>(grid + blocks);
-  launch(*device_, AddUp<GridTerms>{sums_.data(), block_ranges_.data(), grid}, blocks);
-  launch(*device_, AddUp<SourceTerms>{given_.data(), wall_ranges_.data(), given}, walls);
-  launch(*device_, AddUp<SourceTerms>{dragged_.data(), wall_ranges_.data(), given + walls}, drag);
-  launch(*device_, AddUp<SourceTerms>{damped_.data(), block_ranges_.data(), given + walls + drag}, damping);
-  launch(*device_, AddUp<SourceTerms>{fielded_.data(), block_ranges_.data(), given + walls + drag + damping}, fields);
+  parts_.resize(parts_at_[parts] * sizeof(SourceTerms));
+}
+
+template <class T>
+T GridVisit::at_home(std::size_t number) const {
+  T one;
+  std::memcpy(&one, home_.data() + number * sizeof(T), sizeof(T));
+  return one;
+}
+
+double GridVisit::add_results(const VisitInput& in, const StageInput* stage, GridStats& total) {
+  launch(*device_, AddUp<GridTerms>{in.sums, block_ranges_.data(), there<GridTerms>(of_grid)}, size_of(of_grid));
+  const auto add_up = [&](Part part, const SourceTerms* from, const Buffer<Range>& ranges) {
+    launch(*device_, AddUp<SourceTerms>{from, ranges.data(), there<SourceTerms>(part)}, size_of(part));
+  };
+  add_up(of_walls, in.given, wall_ranges_);
+  add_up(of_damping, in.damped, block_ranges_);
+  add_up(of_fields, fields_.given(), block_ranges_);
+  if (stage) add_up(of_layers, stage->dragged, wall_ranges_), add_up(of_forces, stage->driven, block_ranges_);
   home_.resize(parts_.size());
   parts_.download(home_);
-  const auto part = [&]<class T>(std::size_t i, T) {
-    T one;
-    std::memcpy(&one, home_.data() + i * sizeof(T), sizeof(T));
-    return one;
-  };
 
   GridTerms sum = GridTerms::none();
-  for (std::size_t i = 0; i < blocks; ++i) sum.add(part(i, GridTerms{}));
+  for (std::size_t i = 0; i < size_of(of_grid); ++i) sum.add(at_home<GridTerms>(i));
   total.max_speed = std::sqrt(sum.fastest2);
   total.mass = sum.mass;
   total.moment = {sum.moment[0], sum.moment[1], sum.moment[2]};
   total.kinetic = 0.5 * sum.kinetic2;
   total.arrived = 0.5 * sum.arrived2;
   total.finite = sum.finite;
-  for (std::size_t i = 0; i < walls + drag; ++i) {
-    const SourceTerms one = part(blocks + i, SourceTerms{});
-    total.walls[static_cast<std::size_t>(side_of_range_[i % walls])] += one.sum();
-    total.kinetic += one.gained;
-  }
-  for (std::size_t i = 0; i < damping; ++i) total.damping += part(blocks + walls + drag + i, SourceTerms{}).sum();
-  for (std::size_t i = 0; i < fields; ++i)
-    total.fields += part(blocks + walls + drag + damping + i, SourceTerms{}).sum();
-  if (deep == 0) return;
-  deep_home_.resize(deep, SourceTerms::none());
-  deep_given_.download(deep_home_);
-  for (std::size_t i = 0; i < deep; ++i)
-    total.colliders[static_cast<std::size_t>(collider_of_group_[i])] += deep_home_[i].sum();
-}
-
-SourceTerms GridVisit::sum_of_blocks(const Buffer<SourceTerms>& numbers) {
-  block_parts_.resize(block_ranges_.size()), block_parts_home_.resize(block_ranges_.size(), SourceTerms::none());
-  launch(*device_, AddUp<SourceTerms>{numbers.data(), block_ranges_.data(), block_parts_.data()}, block_ranges_.size());
-  block_parts_.download(block_parts_home_);
-  SourceTerms sum = SourceTerms::none();
-  for (const SourceTerms& part : block_parts_home_) sum.add(part);
-  return sum;
+  double work = 0;
+  const auto each = [&](Part part, auto&& add) {
+    for (std::size_t i = 0; i < size_of(part); ++i) add(i, at_home<SourceTerms>(parts_at_[part] + i));
+  };
+  for (const Part part : {of_walls, of_layers})
+    each(part, [&](std::size_t i, const SourceTerms& one) {
+      total.walls[static_cast<std::size_t>(side_of_range_[i])] += one.sum();
+      total.kinetic += one.gained;
+    });
+  each(of_damping, [&](std::size_t, const SourceTerms& one) { total.damping += one.sum(); });
+  each(of_fields, [&](std::size_t, const SourceTerms& one) { total.fields += one.sum(); });
+  each(of_forces, [&](std::size_t, const SourceTerms& one) { work += one.work; });
+  each(of_deep, [&](std::size_t i, const SourceTerms& one) {
+    total.colliders[static_cast<std::size_t>(collider_of_group_[i])] += one.sum();
+  });
+  return work;
 }
 
 void GridVisit::add_image_mass(const World<float>& world, Memory& memory, double dt) {

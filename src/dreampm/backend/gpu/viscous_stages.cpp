@@ -35,10 +35,10 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
       launch(*device_, DragSolids{shared, stage}, visit.shared_count());
     GridStats stats;
     stats.colliders.resize(world.colliders.size());
-    visit.contact(in, world, memory, obstacles, host, dt, false, stats);
+    visit.contact(in, &stage, world, memory, obstacles, host, dt, stats);
     launch(*device_, EndStage{in, stage}, blocks);
-    visit.add_results(in, in.step.skin, stats);
-    sums_.add(std::move(stats), visit.sum_of_blocks(driven_).work, factors.kept);
+    const double work = visit.add_results(in, &stage, stats);
+    sums_.add(std::move(stats), work, factors.kept);
   }
   found.max_speed = passes.fastest_particle(world);
   found.fields.work = visit.field_work(visit.input(world, memory, dt, 0));
