@@ -68,6 +68,9 @@ class ThinWalls {
   bool any_ = false;
 };
 
+template <class R>
+class SurfaceContact;
+
 /// grid_update for all blocks, and the stages of viscosity after it, in parallel, with sums in the
 /// order of the blocks. Keeps the memory that it works with from one step to the next.
 template <class R>
@@ -98,6 +101,7 @@ class GridUpdate {
   }
   const MirrorWalls<R>& images() const;
   ContactGaps& gaps();
+  const SurfaceContact<R>& surfaces() const;
 
   // Contact with surfaces alone, for who visits the nodes elsewhere.
 

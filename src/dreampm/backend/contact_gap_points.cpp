@@ -2,14 +2,12 @@
 #include <algorithm>
 
 #include "dreampm/backend/contact_gap.h"
+#include "dreampm/backend/wall_distance.h"
 
 namespace dreampm {
 namespace {
 
 constexpr float far_away = ContactGaps::none;
-/// A face is turned like a side of the box where its normal has at least this part along that of
-/// the side.
-constexpr float turned_alike = 0.4f;
 
 }  // namespace
 
@@ -59,9 +57,7 @@ void ContactGaps::AtPoints::find_smallest(int side) {
 float ContactGaps::AtPoints::at(const SurfacePoint& point) {
   float gap = far_away;
   for (int side = 0; side < 6; ++side) {
-    if (any_[static_cast<std::size_t>(side)] == 0 ||
-        point.normal[axis_of(side)] * static_cast<float>(inward_of(side)) < turned_alike)
-      continue;
+    if (any_[static_cast<std::size_t>(side)] == 0 || !turned_like(point.normal, side)) continue;
     if (!known_[static_cast<std::size_t>(side)]) find_smallest(side);
     const int i = point.first[0] + 1, j = point.first[1] + 1, k = point.first[2] + 1;
     gap =

@@ -158,6 +158,11 @@ ContactGaps& GridUpdate<R>::gaps() {
 }
 
 template <class R>
+const SurfaceContact<R>& GridUpdate<R>::surfaces() const {
+  return work_->surfaces;
+}
+
+template <class R>
 const std::vector<std::uint32_t>& GridUpdate<R>::surface_blocks() const {
   return work_->surface_blocks;
 }

@@ -60,7 +60,7 @@ std::size_t SurfaceContact<R>::velocities_at(std::size_t& first, std::size_t end
 template <class R>
 void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& point_block, const Nodes<R>& nodes,
                                       R per_dt, const Vec3<R>& gravity_kick, int step, int last) {
-  const R momentum = step < last ? R(step) / R(step + 3) : R(0);  // the last one stays where it is
+  const R momentum = momentum_of_descent<R>(step, last);
   const std::size_t now_at = step & 1, before_at = 1 - now_at;
   std::array<std::size_t, 4> which;
   std::array<Node<R>, 4> sums;
@@ -70,16 +70,14 @@ void SurfaceContact<R>::gradient_step(const World<R>& world, const PointBlock& p
       const std::size_t p = which[i];
       const Node<R>& sum = sums[i];
       ContactPoint& point = points_[p];
-      R now = point.extrapolated - (dot(velocity(sum), point.normal) - point.surface_speed) * point.effective_mass;
-      if (now > R(0)) now = std::max(now - point.approach * point.effective_mass, R(0));
-      if (const Collider& c = world.colliders[point.collider]; c.contact() == WallType::separate)
-        now = std::max(now, c.sticky > 0 ? static_cast<R>(-c.sticky * world.dx * world.dx * world.dx) / per_dt : R(0));
+      const Collider& c = world.colliders[point.collider];
+      R now =
+          descended(point.extrapolated, dot(velocity(sum), point.normal) - point.surface_speed, point.effective_mass,
+                    point.approach, c.contact() == WallType::separate, least_impulse(c.sticky, world.dx, per_dt));
       if (step > 0 && point.edge_limiter >= 0) {
         const ContactPoint& limiter = points_[static_cast<std::size_t>(point.edge_limiter)];
-        // A kernel at a plane surface is half full.
-        const R weight = std::max(R(0), -dot(gravity_kick, point.from_edge)) * 2 * point.mass;
-        const R most = abs(limiter.impulse[before_at]) + weight;
-        if (limiter.effective_mass > R(0)) now = std::clamp(now, -most, most);
+        if (limiter.effective_mass > R(0))
+          now = limited_at_edge(now, limiter.impulse[before_at], point.from_edge, point.mass, gravity_kick);
       }
       const R extrapolated = now + (now - point.impulse[before_at]) * momentum;
       const Vec3<R> change = point.normal * ((extrapolated - point.extrapolated) * point.area);
@@ -137,24 +135,17 @@ void SurfaceContact<R>::apply_friction(const World<R>& world, const NodeBlock& n
     most[live_points_[g].node] += static_cast<R>(world.colliders[point.collider].friction) * point.impulse[last & 1] *
                                   point.area * live_points_[g].inverse_mass;
   }
-  for (std::size_t n = 0; n < block_nodes; ++n) {
-    const Vec3<R> normal = velocity(node_block.facing[n]);
-    const R length = sqrt(dot(normal, normal));
-    if (!(most[n] > R(0) && length > R(0))) continue;
-    const Vec3<R>& surface = node_block.surface_velocity[n];
-    set_velocity(own[n],
-                 apply_coulomb_friction(velocity(own[n]) - surface, normal * (R(1) / length), most[n]) + surface);
-  }
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    set_velocity(own[n], after_friction(velocity(own[n]), node_block.surface_velocity[n],
+                                        velocity(node_block.facing[n]), most[n]));
 }
 
 template <class R>
 void SurfaceContact<R>::clamp_speeds(const NodeBlock& node_block, Nodes<R>& nodes) const {
   Node<R>* const own = nodes.data() + node_block.block * block_nodes;
-  for (std::size_t n = 0; n < block_nodes; ++n) {
-    const Vec3<R>&surface = node_block.surface_velocity[n], relative = velocity(own[n]) - surface;
-    if (const R speed2 = dot(relative, relative); node_block.facing[n].m > R(0) && speed2 > max_speed2_)
-      set_velocity(own[n], relative * sqrt(max_speed2_ / speed2) + surface);
-  }
+  for (std::size_t n = 0; n < block_nodes; ++n)
+    if (node_block.facing[n].m > R(0))
+      set_velocity(own[n], clamped_speed(velocity(own[n]), node_block.surface_velocity[n], max_speed2_));
 }
 
 template <class R>
@@ -164,19 +155,16 @@ void SurfaceContact<R>::record_reactions(const World<R>& world, const NodeBlock&
   const Vec3i first = world.grid.blocks[node_block.block] * block_width;
   for (std::size_t n = 0; n < block_nodes; ++n) {
     if (velocity(own[n]) == node_block.velocity_before[n]) continue;
-    const Vec3d to = static_cast<Vec3d>(velocity(own[n])), normal = static_cast<Vec3d>(velocity(node_block.facing[n]));
-    const Vec3d surface = static_cast<Vec3d>(node_block.surface_velocity[n]), relative = to - surface;
-    // A wall that stands still does work by friction alone: of what is left along normals, putting
-    // particles back undoes as much.
-    const Vec3d slid =
-        frictional ? relative - normal * (dot(relative, normal) / std::max(dot(normal, normal), 1e-30)) : Vec3d{};
+    const Vec3d to = static_cast<Vec3d>(velocity(own[n]));
+    const Vec3d moved_at = works_at(to, static_cast<Vec3d>(node_block.surface_velocity[n]),
+                                    static_cast<Vec3d>(velocity(node_block.facing[n])), frictional);
     const std::size_t collider = node_block.collider[n];
     const Collider& there = world.colliders[collider];
     Vec3d at = world.node_position(first + node_offset(static_cast<int>(n)));
     if (there.rigid) at = nearest_copy(world, at, there.twist.center);
     if (!frictional && is_free_ball_[collider]) at = there.twist.center;
     found.impulse_of(BlockStats::first_collider + collider)
-        .add(at, static_cast<double>(own[n].m), static_cast<Vec3d>(node_block.velocity_before[n]), to, surface + slid);
+        .add(at, static_cast<double>(own[n].m), static_cast<Vec3d>(node_block.velocity_before[n]), to, moved_at);
   }
 }
 

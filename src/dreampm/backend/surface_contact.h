@@ -11,6 +11,7 @@
 #include "dreampm/backend/block_visit.h"
 #include "dreampm/backend/body_coupling.h"
 #include "dreampm/backend/contact_gap.h"
+#include "dreampm/backend/surface_terms.h"
 #include "dreampm/base/thread_team.h"
 #include "dreampm/contact/obstacles.h"
 #include "dreampm/math/bspline.h"
@@ -74,7 +75,8 @@ class SurfaceContact {
   void begin_bodies(const World<R>& world, double dt) { bodies_.begin(world, dt); }
   void end_bodies() { bodies_ = {}; }
 
- private:
+  // What was prepared, for who solves elsewhere.
+
   /// A point of a collider's surface, and its unknowns.
   struct ContactPoint {
     Vec3<R> normal;
@@ -163,6 +165,18 @@ class SurfaceContact {
     std::array<Vec3<R>, block_nodes> surface_velocity;  ///< of colliders at the node's place [m/s]; 0 away from them
   };
 
+  /// Entry `l` of point_nodes() is node in_stencil()[l] of its point's stencil, z fastest.
+  const std::vector<ContactPoint>& points() const { return points_; }
+  const std::vector<PointNode>& point_nodes() const { return point_nodes_; }
+  const std::vector<std::uint8_t>& in_stencil() const { return in_stencil_; }
+  const std::vector<PointBlock>& point_blocks() const { return point_blocks_; }
+  const std::vector<NodeBlock>& node_blocks() const { return node_blocks_; }
+  /// The number of a grid block among node_blocks(), or -1.
+  std::int32_t node_block_of_block(std::size_t block) const { return changes(block) ? node_block_index_[block] : -1; }
+  /// True if any collider moves.
+  bool moves() const { return any_moves_; }
+
+ private:
   /// Puts the points that there are aside.
   void keep_points(const BlockList& grid);
   void find_points(const World<R>& world, const Obstacles& obstacles);

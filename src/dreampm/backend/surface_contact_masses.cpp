@@ -8,24 +8,6 @@
 #include "dreampm/math/four.h"
 
 namespace dreampm {
-namespace {
-
-/// A point's weight over the node's mass, bounded from below [1/kg], 0 without mass;
-/// `open_fraction`: of the node's kernel, outside the colliders. At a plane surface of much matter
-/// the mass at the point is half of that of a node whose kernel is full.
-template <class R>
-R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, const R& at_point) {
-  const R least = at_point * std::max(static_cast<R>(2 * ColliderContact::least_fill) * open_fraction,
-                                      static_cast<R>(ColliderContact::least_share) * w);
-  return mass > R(0) ? w / std::max(mass, least) : R(0);
-}
-
-template <class R>
-R mass_or_none(const Node<R>& node) {
-  return node.m > R(least_mass) ? node.m : R(0);
-}
-
-}  // namespace
 
 template <class R>
 void SurfaceContact<R>::find_masses(const std::array<std::size_t, 4>& which, std::size_t count, const Nodes<R>& nodes,
@@ -189,11 +171,7 @@ void SurfaceContact<R>::find_effective_masses(const PointBlock& point_block, con
       row += inverse_mass * node_block.facing[n].m;
     }
     point.live_end = static_cast<std::size_t>(live - live_nodes_.data());
-    const R part = (held_weight - R(ColliderContact::held_from)) *
-                   R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
-    // A limiter that does not act only needs to be positive.
-    if (part > R(0) && (row > R(0) || !point.acts))
-      point.effective_mass = point.acts ? std::min(part, R(1)) / row : part;
+    point.effective_mass = effective_mass_of(held_weight, row, point.acts);
     point.surface_speed = dot(surface, point.normal);
     if (moves_freely) {
       BodyCoupling::Lever& lever = body_points_[static_cast<std::size_t>(point.lever)].lever;

@@ -26,6 +26,13 @@ DM_FN int side_like(const Vec3<R>& normal) {
   return 2 * a + (normal[a] < R(0));
 }
 
+/// True if a face of that normal is turned like a side of the box: has at least 0.4 along the
+/// side's.
+template <class R>
+DM_FN bool turned_like(const Vec3<R>& normal, int side) {
+  return !(normal[axis_of(side)] * static_cast<R>(inward_of(side)) < R(0.4));
+}
+
 /// The distance [cells] from a wall of the box.
 template <class R>
 struct WallDistance {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "dreampm/backend/gpu/surface_solver.h"
+
 namespace dreampm::gpu {
 
 void GapMeasure::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
@@ -23,7 +25,7 @@ void GapMeasure::prepare(const World<float>& world, const Obstacles& obstacles, 
   std::vector<std::int32_t> walls_of;
   for (const auto& of_block : gaps.walls_of()) walls_of.insert(walls_of.end(), of_block.begin(), of_block.end());
   asked_home_.clear();
-  if (!colliders.empty()) {
+  if (!SurfaceSolver::takes(world) && !gaps.gaps_of().empty()) {
     std::vector<std::uint32_t> blocks;
     host.find_gap_blocks(blocks);
     for (const std::uint32_t b : blocks)

@@ -35,6 +35,8 @@ class GapMeasure {
   GapPointers pointers(std::size_t field) const {
     return gapped_[field] ? GapPointers{walls_of_.data(), gap_.data()} : GapPointers{};
   }
+  /// All gaps by number, side and node; null where matter of that field of the grid has none.
+  const std::int32_t* cells(std::size_t field) const { return gapped_[field] ? gaps_.data() : nullptr; }
 
  private:
   Device* device_;

@@ -52,10 +52,11 @@ GridVisit::GridVisit(Device& device)
       deep_blocks_(device),
       deep_groups_(device),
       deep_nodes_(device),
-      surfaces_(device),
+      deep_surfaces_(device),
       surface_blocks_(device),
       copies_(device),
-      gaps_(device) {}
+      gaps_(device),
+      surfaces_(device) {}
 
 void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host,
                         const std::vector<StencilBlocks>& reached) {
@@ -67,7 +68,10 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
   gaps_.prepare(world, obstacles, host);
   find_deep(world, obstacles);
-  surface_blocks_.upload(host.surface_blocks());
+  if (SurfaceSolver::takes(world))
+    surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
+  else
+    surface_blocks_.upload(host.surface_blocks());
 }
 
 /// Finds the blocks that matter of both fields reaches, and what lies around them.
@@ -125,7 +129,7 @@ void GridVisit::find_deep(const World<float>& world, const Obstacles& obstacles)
     const auto friction = [&](std::size_t f) { return world.holds_liquid(f) ? 0.0f : static_cast<float>(c.friction); };
     surfaces.push_back({c.contact(), {friction(0), friction(1)}});
   }
-  deep_blocks_.upload(blocks), deep_groups_.upload(groups), deep_nodes_.upload(nodes), surfaces_.upload(surfaces);
+  deep_blocks_.upload(blocks), deep_groups_.upload(groups), deep_nodes_.upload(nodes), deep_surfaces_.upload(surfaces);
 }
 
 /// Every block at a wall and every layer of images writes its impulses to a place of its own; those
@@ -207,8 +211,11 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
 
 void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<float>& world, Memory& memory,
                         const Obstacles& obstacles, GridUpdate<float>& host, double dt, GridStats& found) {
-  lay_parts(in, stage);
-  meet_surfaces(world, memory, obstacles, host, dt, !stage, found);
+  lay_parts(world, in, stage);
+  if (SurfaceSolver::takes(world))
+    surfaces_(in, world, gaps_, dt);
+  else
+    meet_surfaces(world, memory, obstacles, host, dt, !stage, found);
   const auto folded = [&](int axis) {
     return folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes;
   };
@@ -216,7 +223,7 @@ void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<flo
     launch(*device_, FoldImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
   launch(*device_, MeetSolids{shared_nodes(in)}, shared_count());
   launch(*device_,
-         MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), surfaces_.data(),
+         MeetDeep{in, deep_blocks_.data(), deep_groups_.data(), deep_nodes_.data(), deep_surfaces_.data(),
                   there<SourceTerms>(of_deep)},
          deep_blocks_.size());
   if (in.all_wait)
@@ -279,7 +286,7 @@ LayersInput GridVisit::layers(int axis) const {
   return {layers_.data() + begin, static_cast<std::int32_t>(end - begin)};
 }
 
-void GridVisit::lay_parts(const VisitInput& in, const StageInput* stage) {
+void GridVisit::lay_parts(const World<float>& world, const VisitInput& in, const StageInput* stage) {
   const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size();
   const std::array<std::size_t, parts> sizes{blocks,
                                              walls,
@@ -287,6 +294,7 @@ void GridVisit::lay_parts(const VisitInput& in, const StageInput* stage) {
                                              in.damped ? blocks : 0,
                                              in.all_wait ? blocks : 0,
                                              stage ? blocks : 0,
+                                             SurfaceSolver::takes(world) ? surfaces_.ranges().size() : 0,
                                              collider_of_group_.size()};
   for (std::size_t p = 0; p < parts; ++p) parts_at_[p + 1] = parts_at_[p] + sizes[p];
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));
@@ -308,6 +316,7 @@ double GridVisit::add_results(const VisitInput& in, const StageInput* stage, Gri
   add_up(of_walls, in.given, wall_ranges_);
   add_up(of_damping, in.damped, block_ranges_);
   add_up(of_fields, fields_.given(), block_ranges_);
+  add_up(of_surfaces, surfaces_.given(), surfaces_.ranges());
   if (stage) add_up(of_layers, stage->dragged, wall_ranges_), add_up(of_forces, stage->driven, block_ranges_);
   home_.resize(parts_.size());
   parts_.download(home_);
@@ -332,6 +341,8 @@ double GridVisit::add_results(const VisitInput& in, const StageInput* stage, Gri
   each(of_damping, [&](std::size_t, const SourceTerms& one) { total.damping += one.sum(); });
   each(of_fields, [&](std::size_t, const SourceTerms& one) { total.fields += one.sum(); });
   each(of_forces, [&](std::size_t, const SourceTerms& one) { work += one.work; });
+  each(of_surfaces,
+       [&](std::size_t i, const SourceTerms& one) { total.colliders[surfaces_.collider_of(i)] += one.sum(); });
   each(of_deep, [&](std::size_t i, const SourceTerms& one) {
     total.colliders[static_cast<std::size_t>(collider_of_group_[i])] += one.sum();
   });

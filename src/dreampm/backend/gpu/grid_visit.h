@@ -10,6 +10,7 @@
 #include "dreampm/backend/gpu/gap_measure.h"
 #include "dreampm/backend/gpu/launch.h"
 #include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/backend/gpu/surface_solver.h"
 
 namespace dreampm::gpu {
 
@@ -24,9 +25,9 @@ class GridVisit {
   void colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
   /// True if any matter has gaps before walls or colliders.
   bool gapped() const { return gaps_.any(); }
-  /// As Backend::grid_update. `thin`: whether SetMemory::distance is to be read. Contact with
-  /// surfaces of colliders is the host's: the blocks of nodes that it looks at go there and come
-  /// back, and are overwritten in the World.
+  /// As Backend::grid_update. `thin`: whether SetMemory::distance is to be read. Beside rigid
+  /// bodies contact with surfaces is the host's: the blocks of nodes that it looks at go there and
+  /// come back, and are overwritten in the World.
   GridStats operator()(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
                        double dt, bool thin);
   /// As MirrorWalls::add_image_mass.
@@ -59,8 +60,18 @@ class GridVisit {
                      double dt, bool bodies, GridStats& found);
   LayersInput layers(int axis) const;
   /// Sums that come home together, in their order.
-  enum Part : std::size_t { of_grid, of_walls, of_layers, of_damping, of_fields, of_forces, of_deep, parts };
-  void lay_parts(const VisitInput& in, const StageInput* stage);
+  enum Part : std::size_t {
+    of_grid,
+    of_walls,
+    of_layers,
+    of_damping,
+    of_fields,
+    of_forces,
+    of_surfaces,
+    of_deep,
+    parts
+  };
+  void lay_parts(const World<float>& world, const VisitInput& in, const StageInput* stage);
   std::size_t size_of(Part part) const { return parts_at_[part + 1] - parts_at_[part]; }
   template <class T>
   T* there(Part part) {
@@ -95,12 +106,13 @@ class GridVisit {
   Buffer<DeepBlock> deep_blocks_;
   Buffer<DeepNodes> deep_groups_;
   Buffer<DeepNode> deep_nodes_;
-  Buffer<ColliderSurface> surfaces_;
+  Buffer<ColliderSurface> deep_surfaces_;
   std::vector<std::int32_t> collider_of_group_;
   Buffer<std::uint32_t> surface_blocks_;
   Buffer<Node<float>> copies_;
   std::vector<Node<float>> copies_home_;
   GapMeasure gaps_;
+  SurfaceSolver surfaces_;
 };
 
 }  // namespace dreampm::gpu

@@ -12,6 +12,7 @@
 #include "dreampm/backend/gpu/solid_contact.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/stage_visit.h"
+#include "dreampm/backend/gpu/surface_solve.h"
 #include "dreampm/backend/gpu/viscous_pass.h"
 
 namespace dreampm::gpu {
@@ -72,9 +73,11 @@ using GridKernels =
                MeetDeep, CopyBlocks, FillBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
                MeasureColliderGaps, FindWallGaps, CopyGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+using SurfaceKernels =
+    KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, ApplyImpulses, FinishSurfaces>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
-    typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;
+    typename JoinLists<GridKernels, SortKernels, SurfaceKernels, typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 

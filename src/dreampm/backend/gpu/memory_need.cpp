@@ -33,7 +33,7 @@ std::size_t bytes_needed(const World<float>& world) {
   // copies of what moves, and of the gaps of solids.
   std::size_t of_colliders = 0, gaps = 0;
   if (!world.colliders.empty()) {
-    of_colliders = 2 + (world.needs_solid_field() ? 2 : 1);
+    of_colliders = 2 + (world.needs_solid_field() ? 2 : 1) + 4;
     const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
     gaps = solid ? 2 * block_gaps * sizeof(float) : 0;
   }

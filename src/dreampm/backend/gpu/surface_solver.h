@@ -1,0 +1,61 @@
+// Contact with the surfaces of colliders whose motion is known, at nodes in a device's memory, in
+// place of SurfaceContact.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "dreampm/backend/common.h"
+#include "dreampm/backend/gpu/gap_measure.h"
+#include "dreampm/backend/gpu/launch.h"
+#include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/backend/surface_contact.h"
+
+namespace dreampm::gpu {
+
+class SurfaceSolver {
+ public:
+  explicit SurfaceSolver(Device& device);
+  /// True if it can solve for these colliders: the host does where rigid bodies are, whose
+  /// velocities are unknowns too.
+  static bool takes(const World<float>& world) { return world.rigid.empty(); }
+  /// Must be called after the same of `host`: after every change of the grid's block list or of
+  /// colliders.
+  void prepare(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host,
+               const ContactGaps& gaps);
+  /// Contact of all fields in a step of `dt` [s].
+  void operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt);
+  /// What colliders gave, and the ranges of it that belong together.
+  const SourceTerms* given() const { return given_.data(); }
+  const Buffer<Range>& ranges() const { return ranges_; }
+  /// The collider of a range.
+  std::size_t collider_of(std::size_t range) const { return static_cast<std::size_t>(collider_of_range_[range]); }
+
+ private:
+  void find_points(const Obstacles& obstacles, const SurfaceContact<float>& host, const ContactGaps& gaps);
+  void find_nodes(const Obstacles& obstacles, const SurfaceContact<float>& host);
+  void find_groups(std::size_t colliders, const SurfaceContact<float>& host);
+  SurfaceInput input(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt,
+                     std::size_t field) const;
+
+  Device* device_;
+  bool moves_ = false;
+  Buffer<ContactPoint> points_;
+  Buffer<PointBlock> blocks_;
+  Buffer<std::uint32_t> node_blocks_, first_, first_group_;
+  Buffer<ContactNode> nodes_;
+  Buffer<PointOfNode> points_of_;
+  Buffer<CollidingMatter> colliders_;
+  Buffer<SurfaceGroup> groups_;
+  Buffer<Range> ranges_;
+  std::vector<std::int32_t> collider_of_range_;
+  // Of one solve.
+  Buffer<PointState> point_states_;
+  Buffer<Vec3<float>> changes_;
+  Buffer<float> velocity_weights_, inverse_masses_;
+  Buffer<NodeState> node_states_;
+  Buffer<std::int32_t> fastest2_;
+  Buffer<SourceTerms> given_;
+};
+
+}  // namespace dreampm::gpu
