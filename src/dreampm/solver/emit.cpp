@@ -116,6 +116,14 @@ std::vector<Vec3d> shifts_into(const World<R>& world, const Box3d& box) {
   return shifts;
 }
 
+/// Makes the places of the matter current that there may be within a box.
+template <class R>
+void download_matter_in(World<R>& world, Backend<R>& backend, const Box3d& box) {
+  std::vector<Box3d> boxes;
+  for (const Vec3d& shift : shifts_into(world, box)) boxes.push_back({box.min - shift, box.max - shift});
+  backend.download_near(world, boxes);
+}
+
 /// The matter that is there within a box.
 template <class R>
 Places matter_in(const World<R>& world, const Box3d& box, double reach) {
@@ -209,8 +217,10 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
     box.min -= Vec3d{reach, reach, reach}, box.max += Vec3d{reach, reach, reach};
     const Vec3d along = pose.rotation(emitter.along);
     const bool may_come_round = ComingRound<R>::may_be(world, along);
-    backend.download(world, motion,
-                     may_come_round ? MatterFields::position | MatterFields::nodes : MatterFields::position);
+    if (may_come_round)
+      backend.download(world, motion, MatterFields::position | MatterFields::nodes);
+    else
+      download_matter_in(world, backend, box);
     std::optional<ComingRound<R>> round;
     if (may_come_round) round.emplace(world, emitter, pose, emitter.speed_at(now), box);
     const Places matter = matter_in(world, box, reach);

@@ -11,6 +11,7 @@
 #include "dreampm/backend/common.h"
 #include "dreampm/backend/gpu/grid_visit.h"
 #include "dreampm/backend/gpu/memory_need.h"
+#include "dreampm/backend/gpu/particle_inserts.h"
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
@@ -18,6 +19,7 @@
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/error.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/state/block_bounds.h"
 
 namespace dreampm {
 namespace {
@@ -33,7 +35,11 @@ class Gpu final : public Backend<float> {
         isa_(device_->isa()),
         memory_(*device_),
         passes_(*device_, memory_),
-        sort_(*device_),
+        some_places_(*device_),
+        some_nodes_(*device_),
+        layout_(*device_, some_nodes_),
+        sort_(*device_, layout_, some_places_, some_nodes_),
+        inserts_(*device_, layout_, some_nodes_),
         visit_(*device_),
         stages_(*device_) {}
   std::string_view name() const override { return name_; }
@@ -72,6 +78,17 @@ class Gpu final : public Backend<float> {
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    check_whole();
+    if (gpu::ParticleInserts::takes(world)) {
+      nodes_to_device(world);
+      inserts_.begin(world, memory_, set, seeds);  // where it throws nothing has changed
+      const Change change(*this);
+      inserts_.place(world, memory_);
+      home_ = MatterFields::none;
+      refresh(world);
+      forget_heaviest(world);
+      return inserts_.scatter(world, memory_, obstacles_, stencil_blocks_);
+    }
     const Change change(*this);
     bring_home(world, MatterFields::all);
     insert(world, set, seeds);
@@ -147,6 +164,9 @@ class Gpu final : public Backend<float> {
   }
 
   void download(World<float>& world, Motion<float>&, MatterFields fields) override { bring_home(world, fields); }
+  void download_near(World<float>& world, std::span<const Box3d> boxes) override {
+    if (!includes(home_, MatterFields::position)) some_places_.download(world, memory_, blocks_near(world, boxes));
+  }
   void upload(const World<float>& world, const Motion<float>&, MatterFields fields) override {
     const Change change(*this);
     memory_.resize_sets(world.sets.size());
@@ -302,7 +322,11 @@ class Gpu final : public Backend<float> {
   Regroup<float> regroup_;
   GridUpdate<float> update_;
   gpu::ParticlePasses passes_;
+  gpu::SomePlaces some_places_;
+  gpu::SomeNodes some_nodes_;
+  gpu::GridLayout layout_;
   gpu::ParticleSort sort_;
+  gpu::ParticleInserts inserts_;
   gpu::GridVisit visit_;
   gpu::ViscousStages stages_;
   std::vector<StencilBlocks> stencil_blocks_;  ///< by block of particles

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "dreampm/backend/gpu/deep_contact.h"
+#include "dreampm/backend/gpu/flow_kernels.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
@@ -62,13 +63,14 @@ struct MaterialKernels {
 };
 using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
+using FlowKernels = KernelList<OpenColumns, PlaceSeeds, HoldCells, FindEmptyBlocks, CopyPlaces>;
 /// Those of the grid, and sums.
 using GridKernels = KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep,
                                CopyBlocks, BeginStage, EndStage, ClearGaps, MeasureGaps, FindWallGaps, AddUp<BlockSums>,
                                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
-    typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;
+    typename JoinLists<GridKernels, SortKernels, FlowKernels, typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 
