@@ -205,6 +205,41 @@ TEST(GpuFlow, SinksTakeAsOnTheHost) {
     }
 }
 
+// A sink over all of the space, then matter where there is none at all.
+TEST(GpuFlow, ADrainMayTakeEverythingAndATapBeginAnew) {
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = flow_world("mixed", seeds);
+  const auto gpu = flow_gpu();
+  begin(w, *gpu, seeds);
+  advance(w, *gpu, 10);
+  const std::size_t all = w.particles();
+  Sink sink{"all", region_of({{-1, -1, -1}, {2, 2, 2}})};
+  w.sinks = {sink};
+  gpu->grid_update(w, w.dt_next);
+  gpu->sort(w);
+  EXPECT_EQ(w.particles(), 0u);
+  EXPECT_EQ(w.sinks[0].taken, all);
+  EXPECT_EQ(w.left, all);
+  EXPECT_TRUE(w.particle_blocks.empty());
+  w.sinks.clear();
+  Motion<float> none;
+  gpu->download(w, none, MatterFields::all);
+  World<float> want = w;
+  const auto host = make_reference_backend<float>(), fresh = flow_gpu();
+  host->attach(want);
+  const auto more = anywhere(w, 10'000, 400, {0.4, 0.4, 0.4}, {0.6, 0.6, 0.6});
+  gpu->insert_particles(w, 2, more), host->insert_particles(want, 2, more);
+  gpu->download(w, none, MatterFields::all);
+  expect_same_matter(w, want);
+  // It goes on as a world does that never had other matter.
+  want.scatter_bounds = w.scatter_bounds;
+  fresh->attach(want);
+  advance(w, *gpu, 20), advance(want, *fresh, 20);
+  gpu->download(w, none, MatterFields::all), fresh->download(want, none, MatterFields::all);
+  expect_same_matter(w, want);
+  EXPECT_EQ(w.particles(), 400u);
+}
+
 /// A pool under a tap, with a drain in a corner of its floor.
 World<float> pool(std::vector<std::vector<ParticleSeed>>& seeds) {
   World<float> w = empty_world<float>(0.02, {30, 20, 30});

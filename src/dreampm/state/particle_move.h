@@ -34,7 +34,10 @@ DM_FN int cell_of(R u) {
 /// block may be rounded to that.
 template <class R>
 DM_FN int held_cell(const Vec3<R>& u) {
-  const auto cell = [](R at) { return at < R(0) ? 0 : at < R(block_width) ? static_cast<int>(at) : block_width - 1; };
+  const auto cell = [](R at) {
+    const int c = static_cast<int>(at);
+    return c < 0 ? 0 : c < block_width ? c : block_width - 1;
+  };
   return node_index(cell(u.x), cell(u.y), cell(u.z));
 }
 

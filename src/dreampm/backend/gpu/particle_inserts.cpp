@@ -114,12 +114,9 @@ void ParticleInserts::place(World<float>& world, Memory& memory) {
 }
 
 void ParticleInserts::place_seeds(const ParticleSet<float>& set, SetMemory& memory) {
-  PlaceSeeds kernel{nullptr,
-                    0,
-                    static_cast<std::uint32_t>(set.state.size()),
-                    {},
-                    memory.now.pointers(set.has_own_velocity()),
-                    memory.id.data()};
+  PlaceSeeds kernel{
+      nullptr,         0, static_cast<std::uint32_t>(set.state.size()), {}, memory.now.pointers(set.has_own_velocity()),
+      memory.id.data()};
   Materials::with(set.material, [&]<class M>() {
     for (int c = 0; c < state_columns<M>; ++c) kernel.rest[c] = M::template State<float>::rest[c];
   });

@@ -58,15 +58,13 @@ void SomeNodes::download(World<float>& world, Memory& memory, std::size_t target
   resize_for_overwrite(home_, copies_.size());
   launch(*device_, CopyBlocks{blocks_.data(), memory.nodes[target].data(), copies_.data(), false}, chosen_.size());
   copies_.download(home_);
-  each_block(world, target,
-             [](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
+  each_block(world, target, [](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
 }
 
 void SomeNodes::upload(World<float>& world, Memory& memory, std::size_t target) {
   if (chosen_.empty()) return;
   resize_for_overwrite(home_, chosen_.size() * block_nodes);
-  each_block(world, target,
-             [](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
+  each_block(world, target, [](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
   copies_.upload(home_);
   launch(*device_, CopyBlocks{blocks_.data(), memory.nodes[target].data(), copies_.data(), true}, chosen_.size());
 }
