@@ -130,6 +130,12 @@ probes:
   flow: {type: velocity, at: [0.12, 0.1, 0.08], radius: 0.05}
 )",
      10, 0.06},  // a drain takes when particles are sorted, which nobody promises to be at the same step
+    {"a tap alone, which begins with no matter", R"(
+materials: {water: {type: newtonian}}
+emitters:
+  tap: {material: water, shape: {cylinder: {radius: 0.03, height: 0.02}, center: [0.12, 0.17, 0.08]}, velocity: [0, -1.5, 0], start: 0.01, pool: 4000}
+)",
+     8},
     {"jelly in water of large steps", R"(
 materials:
   water: {type: newtonian}

@@ -7,10 +7,10 @@
 #include <array>
 #include <cstdio>
 #include <limits>
-#include <map>
 #include <utility>
 
 #include <solver/mixed_world.h>
+#include "counting_device.h"
 #include "dreampm/backend/gpu/host_device.h"
 #include "dreampm/backend/gpu/memory_need.h"
 #include "dreampm/base/parallel.h"
@@ -194,40 +194,6 @@ TEST(Gpu, WhatWasAssumedTooSmallIsFound) {
   }
   EXPECT_NEAR(most, found[1], 0.5 * found[1]);
 }
-
-/// Counts what is asked of a device.
-class Counting final : public gpu::Device {
- public:
-  explicit Counting(std::unique_ptr<gpu::Device> device) : device_(std::move(device)) {}
-  std::string about() const override { return device_->about(); }
-  std::string isa() const override { return device_->isa(); }
-  Memory memory() const override { return device_->memory(); }
-  void* allocate(std::size_t bytes) override {
-    void* const memory = device_->allocate(bytes);
-    ++allocations, taken += sizes_[memory] = bytes;
-    return memory;
-  }
-  void release(void* memory) noexcept override {
-    taken -= sizes_[memory], sizes_.erase(memory);
-    device_->release(memory);
-  }
-  void upload(void* to, const void* from, std::size_t bytes) override {
-    uploaded += bytes, device_->upload(to, from, bytes);
-  }
-  void download(void* to, const void* from, std::size_t bytes) override {
-    downloaded += bytes, ++downloads, device_->download(to, from, bytes);
-  }
-  void launch(int number, const void* arguments, int blocks) override {
-    ++launches, device_->launch(number, arguments, blocks);
-  }
-  void clear() { uploaded = downloaded = 0, downloads = launches = allocations = 0; }
-  std::size_t uploaded = 0, downloaded = 0, taken = 0;
-  int downloads = 0, launches = 0, allocations = 0;
-
- private:
-  std::unique_ptr<gpu::Device> device_;
-  std::map<void*, std::size_t> sizes_;
-};
 
 // Matter in a box stays on the device: a step brings its sums home, twice, and a sort the numbers
 // of blocks, less than two columns of the particles.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "dreampm/backend/backend.h"
+#include "dreampm/state/block_bounds.h"
 
 namespace dreampm::test {
 
@@ -82,6 +83,18 @@ class Away final : public Backend<R> {
   void download(World<R>& world, Motion<R>& motion, MatterFields fields) override {
     copy(kept_, world, fields);
     if (includes(fields, MatterFields::motion)) motion = motion_;
+  }
+  void download_near(World<R>& world, std::span<const Box3d> boxes) override {
+    copy(kept_, world, MatterFields::position);
+    for (ParticleSet<R>& set : world.sets)
+      for (auto& axis : set.u) std::fill(axis.begin(), axis.end(), std::numeric_limits<R>::quiet_NaN());
+    for (const std::uint32_t b : blocks_near(world, boxes))
+      for (std::size_t s = 0; s < world.sets.size(); ++s) {
+        const ParticleSet<R>& set = kept_.sets[s];
+        for (std::size_t a = 0; set.size() > 0 && a < 3; ++a)
+          std::copy(set.u[a].begin() + set.block_start[b], set.u[a].begin() + set.block_start[b + 1],
+                    world.sets[s].u[a].begin() + set.block_start[b]);
+      }
   }
   void upload(const World<R>& world, const Motion<R>& motion, MatterFields fields) override {
     copy(world, kept_, fields);

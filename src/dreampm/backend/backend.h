@@ -88,6 +88,9 @@ class Backend {
   /// Makes what `fields` name current in the World's arrays and in `motion`. Whoever reads them
   /// outside of backend/ and state/ calls it before. Changes nothing that the verbs see.
   virtual void download(World<R>& /*world*/, Motion<R>& /*motion*/, MatterFields /*fields*/) {}
+  /// The same for positions of the particles near some boxes [m]: of those that for_each_near() of
+  /// a ParticleSetView calls with one of the boxes. What the arrays have of others is undefined.
+  virtual void download_near(World<R>& /*world*/, std::span<const Box3d> /*boxes*/) {}
   /// Takes over the `fields` that an edit changed in the World's arrays or in `motion`; later verbs
   /// and reductions use them. The order and the number of particles may differ only where all of
   /// MatterFields::particles are named.

@@ -133,13 +133,6 @@ void swap_fields(GridFields<R>& a, GridFields<R>& b) {
 template <class R>
 PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const ParticleSeed> seeds,
                         const Obstacles& obstacles) {
-  ParticleSet<R>& set = world.sets.at(index);
-  const SetStep<R> step = set_step(world, set, 0, world.kept_for);
-  PassStats stats;
-  const StressResponse<R> rest = response_at_rest<R>(set);
-  stats.wave_speed = static_cast<double>(rest.sound_speed);
-  stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
-  stats.j_min = stats.j_max = 1;
   // The colliders' share of the mixture, where the grid is new.
   if (!world.grid.mixture.empty())
     for (std::size_t b = 0; b < world.grid.blocks.size(); ++b) {
@@ -148,6 +141,18 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
                                      [](const Node<R>& n) { return n.x == 0 && n.y == 0 && n.z == 0 && n.m == 0; });
       if (fresh) add_colliders(world, obstacles, b, m);
     }
+  return add_seeds(world, index, seeds);
+}
+
+template <class R>
+PassStats add_seeds(World<R>& world, std::size_t index, std::span<const ParticleSeed> seeds) {
+  ParticleSet<R>& set = world.sets.at(index);
+  const SetStep<R> step = set_step(world, set, 0, world.kept_for);
+  PassStats stats;
+  const StressResponse<R> rest = response_at_rest<R>(set);
+  stats.wave_speed = static_cast<double>(rest.sound_speed);
+  stats.viscosity = static_cast<double>(rest.kinematic_viscosity);
+  stats.j_min = stats.j_max = 1;
   const NodesToAddTo<R> to = nodes_to_add_to(world, set);
   for (const ParticleSeed& n : seeds) {
     const auto home = world.locate(n.position);
@@ -168,16 +173,17 @@ PassStats scatter_seeds(World<R>& world, std::size_t index, std::span<const Part
   return stats;
 }
 
-#define DM_INSTANTIATE(R)                                                                               \
-  template void find_stencil_blocks(const World<R>&, std::vector<StencilBlocks>&);                      \
-  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                              \
-  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);                 \
-  template void fit_grid(const World<R>&, GridFields<R>&);                                              \
-  template void add_colliders(const World<R>&, const Obstacles&, std::size_t, Node<R>*);                \
-  template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t);            \
-  template void begin_pass(World<R>&, const Obstacles&, const MirrorWalls<R>&, GridFields<R>&, double); \
-  template void swap_fields(GridFields<R>&, GridFields<R>&);                                            \
-  template PassStats scatter_seeds(World<R>&, std::size_t, std::span<const ParticleSeed>, const Obstacles&);
+#define DM_INSTANTIATE(R)                                                                                    \
+  template void find_stencil_blocks(const World<R>&, std::vector<StencilBlocks>&);                           \
+  template BlockWalls<R> block_walls(const World<R>&, const Vec3i&, bool);                                   \
+  template SetStep<R> set_step(const World<R>&, const ParticleSet<R>&, double, double);                      \
+  template void fit_grid(const World<R>&, GridFields<R>&);                                                   \
+  template void add_colliders(const World<R>&, const Obstacles&, std::size_t, Node<R>*);                     \
+  template void clear_block(const World<R>&, const Obstacles&, GridFields<R>&, std::size_t);                 \
+  template void begin_pass(World<R>&, const Obstacles&, const MirrorWalls<R>&, GridFields<R>&, double);      \
+  template void swap_fields(GridFields<R>&, GridFields<R>&);                                                 \
+  template PassStats scatter_seeds(World<R>&, std::size_t, std::span<const ParticleSeed>, const Obstacles&); \
+  template PassStats add_seeds(World<R>&, std::size_t, std::span<const ParticleSeed>);
 DM_INSTANTIATE(float)
 DM_INSTANTIATE(double)
 #undef DM_INSTANTIATE

@@ -124,10 +124,15 @@ class GridUpdate {
   std::unique_ptr<Work> work_;
 };
 
-/// Inserts, scatters mass, momentum and C, and measures the bounds of the rest state.
+/// Scatters mass, momentum and C of seeds that are inserted, and measures the bounds of the rest
+/// state.
 template <class R>
 PassStats scatter_seeds(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds,
                         const Obstacles& obstacles);
+/// The same without the colliders' share of new blocks of the mixture. Looks at no nodes but those
+/// that the seeds reach.
+template <class R>
+PassStats add_seeds(World<R>& world, std::size_t set, std::span<const ParticleSeed> seeds);
 
 /// The walls of the box for particles of `block`. `colliders`: whether there are any about.
 template <class R>

@@ -26,8 +26,8 @@ DM_FN R bounded_inverse_mass(const R& w, const R& mass, const R& open_fraction, 
 /// another, only needs to be positive.
 template <class R>
 DM_FN R effective_mass_of(const R& held_weight, const R& row, bool acts) {
-  const R part = (held_weight - R(ColliderContact::held_from)) *
-                 R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
+  const R part =
+      (held_weight - R(ColliderContact::held_from)) * R(1 / (ColliderContact::held_whole - ColliderContact::held_from));
   if (!(part > R(0) && (row > R(0) || !acts))) return R(0);
   return acts ? min(part, R(1)) / row : part;
 }

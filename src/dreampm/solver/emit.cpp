@@ -116,6 +116,14 @@ std::vector<Vec3d> shifts_into(const World<R>& world, const Box3d& box) {
   return shifts;
 }
 
+/// Makes the places of the matter current that there may be within a box.
+template <class R>
+void download_matter_in(World<R>& world, Backend<R>& backend, const Box3d& box) {
+  std::vector<Box3d> boxes;
+  for (const Vec3d& shift : shifts_into(world, box)) boxes.push_back({box.min - shift, box.max - shift});
+  backend.download_near(world, boxes);
+}
+
 /// The matter that is there within a box.
 template <class R>
 Places matter_in(const World<R>& world, const Box3d& box, double reach) {
@@ -134,17 +142,19 @@ Places matter_in(const World<R>& world, const Box3d& box, double reach) {
 template <class R>
 class ComingRound {
  public:
-  /// Looks at the World's nodes: they are current.
-  ComingRound(const World<R>& world, const Emitter& emitter, const Pose& pose, double speed, Box3d box)
+  /// Looks at the World's nodes, and at places in looked_at(): they are current.
+  ComingRound(const World<R>& world, const Emitter& emitter, const Pose& pose, double speed, const Box3d& box)
       : world_(world),
         emitter_(emitter),
         pose_(pose),
         along_(pose.rotation(emitter.along)),
         speed_(speed),
-        reach_(far * world.sets[emitter.set].spacing()),
-        matter_(reach_) {
-    box.min -= Vec3d{reach_, reach_, reach_}, box.max += Vec3d{reach_, reach_, reach_};
-    matter_ = matter_in(world, box, reach_);
+        reach_(reach_of(world, emitter)),
+        matter_(matter_in(world, looked_at(world, emitter, box), reach_)) {}
+  /// Where it looks for matter, for sites in the box.
+  static Box3d looked_at(const World<R>& world, const Emitter& emitter, const Box3d& box) {
+    const double reach = reach_of(world, emitter);
+    return {box.min - Vec3d{reach, reach, reach}, box.max + Vec3d{reach, reach, reach}};
   }
   static bool may_be(const World<R>& world, const Vec3d& along) {
     for (int a = 0; a < 3; ++a)
@@ -164,6 +174,9 @@ class ComingRound {
   /// Spacings: no place within matter is as far from all of it. Of the speed of the tap, what comes
   /// round has at least; what is dragged along from rest does not.
   static constexpr double far = 1.25, as_fast = 0.5;
+  static double reach_of(const World<R>& world, const Emitter& emitter) {
+    return far * world.sets[emitter.set].spacing();
+  }
 
   const World<R>& world_;
   const Emitter& emitter_;
@@ -209,8 +222,8 @@ Entered emit(World<R>& world, Backend<R>& backend, Solver<R>& solver, Motion<R>&
     box.min -= Vec3d{reach, reach, reach}, box.max += Vec3d{reach, reach, reach};
     const Vec3d along = pose.rotation(emitter.along);
     const bool may_come_round = ComingRound<R>::may_be(world, along);
-    backend.download(world, motion,
-                     may_come_round ? MatterFields::position | MatterFields::nodes : MatterFields::position);
+    if (may_come_round) backend.download(world, motion, MatterFields::nodes);
+    download_matter_in(world, backend, may_come_round ? ComingRound<R>::looked_at(world, emitter, box) : box);
     std::optional<ComingRound<R>> round;
     if (may_come_round) round.emplace(world, emitter, pose, emitter.speed_at(now), box);
     const Places matter = matter_in(world, box, reach);

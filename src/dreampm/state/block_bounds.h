@@ -1,5 +1,10 @@
 // Bounds of the places where particles of a block may be.
 #pragma once
+#include <algorithm>
+#include <cstdint>
+#include <span>
+#include <vector>
+
 #include "dreampm/state/world.h"
 
 namespace dreampm {
@@ -24,6 +29,21 @@ inline bool meet(const Box3d& a, const Box3d& b) {
   for (int axis = 0; axis < 3; ++axis)
     if (a.min[axis] > b.max[axis] || a.max[axis] < b.min[axis]) return false;
   return true;
+}
+
+/// True if particles of block number `block` may lie in the box [m], between the steps.
+template <class R>
+bool block_reaches(const World<R>& world, std::size_t block, const Box3d& box) {
+  return meet(bounds_of_block(world, world.particle_blocks[block], 1), box);
+}
+/// The blocks whose particles may lie in one of the boxes, rising.
+template <class R>
+std::vector<std::uint32_t> blocks_near(const World<R>& world, std::span<const Box3d> boxes) {
+  std::vector<std::uint32_t> near;
+  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
+    if (std::any_of(boxes.begin(), boxes.end(), [&](const Box3d& box) { return block_reaches(world, b, box); }))
+      near.push_back(static_cast<std::uint32_t>(b));
+  return near;
 }
 
 }  // namespace dreampm

@@ -12,13 +12,12 @@ namespace dreampm {
 namespace {
 
 /// Calls body(field of a, field of b, whether the world wants it) for all fields of two grids, of
-/// which one is the world's. What a sort need not carry new matter must not lose: it comes in
-/// before the step that reads it.
+/// which one is the world's.
 template <class R, class Body>
 void for_fields(const World<R>& world, GridFields<R>& a, GridFields<R>& b, const Body& body) {
   visit_nodes(a, b, [&]<class F>(const F& field, auto& its, auto& other) {
     const auto& present = &a == &world.grid ? its : other;
-    body(its, other, F::use.carried ? field.needed(world) : !present.empty());
+    body(its, other, goes_on(field, world, present));
   });
 }
 

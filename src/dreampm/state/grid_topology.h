@@ -2,11 +2,20 @@
 #pragma once
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "dreampm/state/neighbors.h"
 
 namespace dreampm {
+
+/// True if the nodes of a field are there after its blocks have changed. What a sort need not carry
+/// new matter must not lose: it comes in before the step that reads it. `present`: the nodes of the
+/// world's field.
+template <class F, class R>
+bool goes_on(const F& field, const World<R>& world, const Nodes<R>& present) {
+  return F::use.carried ? field.needed(world) : !present.empty();
+}
 
 /// Lays grid blocks wherever the stencils of particles can reach until the next sort, and behind
 /// walls that they can reach, and carries the nodes of those over that were there before; new ones
@@ -26,6 +35,8 @@ class GridTopology {
   bool lay(World<R>& world, std::span<const std::uint64_t> cells);
   /// By block of the grid, after that: its number before, or BlockList::none.
   void find_before(const World<R>& world, std::vector<std::int32_t>& before) const;
+  /// Takes back what lay() did where it returned true, as long as nobody has touched the fields.
+  void take_back(World<R>& world) { std::swap(blocks_, world.grid.blocks); }
 
  private:
   void carry(World<R>& world, GridFields<R>& spare);

@@ -1,9 +1,9 @@
 // The cells of a block that hold particles.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <cstdint>
 
+#include "dreampm/state/particle_move.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
@@ -16,10 +16,8 @@ std::uint64_t held_cells(const World<R>& world, std::size_t block) {
   for (const ParticleSet<R>& set : world.sets) {
     if (set.size() == 0) continue;
     const R *x = set.u[0].data(), *y = set.u[1].data(), *z = set.u[2].data();
-    // A place just before the end of its block may be rounded to that.
-    const auto cell = [](R u) { return std::clamp(static_cast<int>(u), 0, block_width - 1); };
     for (std::size_t p = set.block_start[block]; p < set.block_start[block + 1]; ++p)
-      held[static_cast<std::size_t>(node_index(cell(x[p]), cell(y[p]), cell(z[p])))] = 1;
+      held[static_cast<std::size_t>(held_cell(Vec3<R>{x[p], y[p], z[p]}))] = 1;
   }
   std::uint64_t cells = 0;
   for (std::size_t n = 0; n < block_nodes; ++n) cells |= std::uint64_t{held[n]} << n;

@@ -30,6 +30,17 @@ DM_FN int cell_of(R u) {
   return (towards_zero - (u < static_cast<R>(towards_zero))) & (block_width - 1);
 }
 
+/// The cell that a sorted particle lies in, by node_index(). A place just before the end of its
+/// block may be rounded to that.
+template <class R>
+DM_FN int held_cell(const Vec3<R>& u) {
+  const auto cell = [](R at) {
+    const int c = static_cast<int>(at);
+    return c < 0 ? 0 : c < block_width ? c : block_width - 1;
+  };
+  return node_index(cell(u.x), cell(u.y), cell(u.z));
+}
+
 /// Returns the place of a cell in the order of a block: row after row along z, each beside the one
 /// before, so that those of two rows that share a vector of lanes share nodes as well.
 constexpr int turn_of(int i, int j, int k) { return node_index(i, j ^ ((i & 1) * (block_width - 1)), k); }

@@ -45,7 +45,7 @@ class ParticleSetView {
   template <class Body>
   void for_each_near(const Box3d& box, const Body& body) const {
     for (std::size_t b = 0; b + 1 < set_.block_start.size(); ++b)
-      if (meet(bounds_of_block(world_, world_.particle_blocks[b], 1), box)) for_block(b, body);
+      if (block_reaches(world_, b, box)) for_block(b, body);
   }
 
  private:

@@ -232,9 +232,8 @@ Regroup<R>::~Regroup() = default;
 template <class R>
 void Regroup<R>::operator()(World<R>& world, GridFields<R>& spare, bool far) {
   Scratch& s = *scratch_;
-  // Before the first step the grid still holds momenta, with what would be taken out of the matter.
   s.taken.assign(world.sets.size(), {});
-  if (world.step > 0 && !world.sinks.empty()) s.taken = take_out(world, far);
+  if (sinks_take(world)) s.taken = take_out(world, far);
   const auto sort = [&] { s.find_moves(world), s.plan.find_blocks(world), s.find_places(world); };
   sort();
   if (far) {

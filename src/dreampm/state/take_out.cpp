@@ -81,6 +81,13 @@ class Mouth {
   Box3d bounds_;
 };
 
+/// Calls body(block) for the blocks of particles that a sink reaches, in their order.
+template <class R, class Body>
+void each_block_at(const World<R>& world, const Mouth& mouth, bool far, const Body& body) {
+  for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
+    if (mouth.may_reach(bounds_of_block(world, world.particle_blocks[b], (far ? 2 : 1) * block_width))) body(b);
+}
+
 /// A particle that a sink takes, and what it takes along.
 struct Taken {
   std::uint32_t number;
@@ -105,6 +112,22 @@ std::vector<Taken> taken_of(const World<R>& world, const ParticleSet<R>& set, st
 }  // namespace
 
 template <class R>
+bool sinks_take(const World<R>& world) {
+  return world.step > 0 && !world.sinks.empty();
+}
+
+template <class R>
+std::vector<std::uint32_t> blocks_at_sinks(const World<R>& world, bool far) {
+  std::vector<bool> reached(world.particle_blocks.size());
+  for (const Sink& sink : world.sinks)
+    each_block_at(world, Mouth(world, sink), far, [&](std::size_t b) { reached[b] = true; });
+  std::vector<std::uint32_t> blocks;
+  for (std::size_t b = 0; b < reached.size(); ++b)
+    if (reached[b]) blocks.push_back(static_cast<std::uint32_t>(b));
+  return blocks;
+}
+
+template <class R>
 std::vector<std::vector<std::uint32_t>> take_out(World<R>& world, bool far) {
   std::vector<std::vector<std::uint32_t>> all(world.sets.size());
   std::vector<std::size_t> near;
@@ -112,9 +135,7 @@ std::vector<std::vector<std::uint32_t>> take_out(World<R>& world, bool far) {
   for (Sink& sink : world.sinks) {
     const Mouth mouth(world, sink);
     near.clear();
-    for (std::size_t b = 0; b < world.particle_blocks.size(); ++b)
-      if (mouth.may_reach(bounds_of_block(world, world.particle_blocks[b], (far ? 2 : 1) * block_width)))
-        near.push_back(b);
+    each_block_at(world, mouth, far, [&](std::size_t b) { near.push_back(b); });
     for (std::size_t s = 0; s < world.sets.size(); ++s) {
       const ParticleSet<R>& set = world.sets[s];
       if (set.size() == 0) continue;
@@ -134,7 +155,12 @@ std::vector<std::vector<std::uint32_t>> take_out(World<R>& world, bool far) {
   return all;
 }
 
-template std::vector<std::vector<std::uint32_t>> take_out(World<float>&, bool);
-template std::vector<std::vector<std::uint32_t>> take_out(World<double>&, bool);
+#define DM_INSTANTIATE(R)                                                     \
+  template bool sinks_take(const World<R>&);                                  \
+  template std::vector<std::uint32_t> blocks_at_sinks(const World<R>&, bool); \
+  template std::vector<std::vector<std::uint32_t>> take_out(World<R>&, bool);
+DM_INSTANTIATE(float)
+DM_INSTANTIATE(double)
+#undef DM_INSTANTIATE
 
 }  // namespace dreampm

@@ -1,7 +1,5 @@
 #include "dreampm/backend/gpu/gpu.h"
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <optional>
 #include <string>
@@ -12,6 +10,7 @@
 #include "dreampm/backend/gpu/collider_nodes.h"
 #include "dreampm/backend/gpu/grid_visit.h"
 #include "dreampm/backend/gpu/memory_need.h"
+#include "dreampm/backend/gpu/particle_inserts.h"
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
 #include "dreampm/backend/gpu/set_memory.h"
@@ -19,11 +18,11 @@
 #include "dreampm/backend/gpu/viscous_stages.h"
 #include "dreampm/backend/scatter_particles.h"
 #include "dreampm/base/error.h"
+#include "dreampm/state/block_bounds.h"
 
 namespace dreampm {
 namespace {
 
-using gpu::of_field;
 using gpu::targets;
 
 class Gpu final : public Backend<float> {
@@ -34,7 +33,11 @@ class Gpu final : public Backend<float> {
         isa_(device_->isa()),
         memory_(*device_),
         passes_(*device_, memory_),
-        sort_(*device_),
+        some_places_(*device_),
+        some_nodes_(*device_),
+        layout_(*device_, some_nodes_),
+        sort_(*device_, layout_, some_places_, some_nodes_),
+        inserts_(*device_, layout_, some_nodes_),
         visit_(*device_),
         stages_(*device_),
         thin_(*device_),
@@ -78,6 +81,17 @@ class Gpu final : public Backend<float> {
   }
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
+    check_whole();
+    if (gpu::ParticleInserts::takes(world)) {
+      nodes_to_device(world);
+      inserts_.begin(world, memory_, set, seeds);  // where it throws nothing has changed
+      const Change change(*this);
+      inserts_.place(world, memory_);
+      home_ = MatterFields::none;
+      refresh(world);
+      forget_heaviest(world);
+      return inserts_.scatter(world, memory_, obstacles_, stencil_blocks_);
+    }
     const Change change(*this);
     bring_home(world, MatterFields::all);
     insert(world, set, seeds);
@@ -129,6 +143,9 @@ class Gpu final : public Backend<float> {
   }
 
   void download(World<float>& world, Motion<float>&, MatterFields fields) override { bring_home(world, fields); }
+  void download_near(World<float>& world, std::span<const Box3d> boxes) override {
+    if (!includes(home_, MatterFields::position)) some_places_.download(world, memory_, blocks_near(world, boxes));
+  }
   void upload(const World<float>& world, const Motion<float>&, MatterFields fields) override {
     const Change change(*this);
     memory_.resize_sets(world.sets.size());
@@ -261,7 +278,11 @@ class Gpu final : public Backend<float> {
   Regroup<float> regroup_;
   GridUpdate<float> update_;
   gpu::ParticlePasses passes_;
+  gpu::SomePlaces some_places_;
+  gpu::SomeNodes some_nodes_;
+  gpu::GridLayout layout_;
   gpu::ParticleSort sort_;
+  gpu::ParticleInserts inserts_;
   gpu::GridVisit visit_;
   gpu::ViscousStages stages_;
   gpu::ThinDistances thin_;

@@ -53,8 +53,7 @@ GridVisit::GridVisit(Device& device)
       deep_groups_(device),
       deep_nodes_(device),
       deep_surfaces_(device),
-      surface_blocks_(device),
-      copies_(device),
+      at_surfaces_(device),
       gaps_(device),
       surfaces_(device) {}
 
@@ -71,7 +70,7 @@ void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obst
   if (SurfaceSolver::takes(world))
     surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
   else
-    surface_blocks_.upload(host.surface_blocks());
+    at_surfaces_.choose(host.surface_blocks());
 }
 
 /// Finds the blocks that matter of both fields reaches, and what lies around them.
@@ -236,30 +235,10 @@ void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<flo
 
 void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
                               double dt, bool bodies, GridStats& found) {
-  const std::vector<std::uint32_t>& blocks = host.surface_blocks();
-  if (blocks.empty()) return;
-  const std::size_t size = blocks.size() * block_nodes, fields = world.grid.solids.empty() ? 1 : 2;
-  copies_.resize(fields * size), copies_home_.resize(copies_.size());
-  const auto copy_there = [&](bool back) {
-    for (std::size_t f = 0; f < fields; ++f)
-      launch(
-          *device_,
-          CopyBlocks{surface_blocks_.data(), memory.nodes[of_field(nodes, f)].data(), copies_.data() + f * size, back},
-          blocks.size());
-  };
-  const auto copy_here = [&](auto&& one) {
-    for (std::size_t f = 0; f < fields; ++f)
-      for (std::size_t i = 0; i < blocks.size(); ++i)
-        one(world.grid.field(f).data() + std::size_t{blocks[i]} * block_nodes,
-            copies_home_.data() + f * size + i * block_nodes);
-  };
-  copy_there(false);
-  copies_.download(copies_home_);
-  copy_here([](Node<float>* here, const Node<float>* there) { std::copy_n(there, block_nodes, here); });
+  const std::size_t fields = world.grid.solids.empty() ? 1 : 2;
+  for (std::size_t f = 0; f < fields; ++f) at_surfaces_.download(world, memory, of_field(nodes, f));
   host.meet_surfaces(world, obstacles, dt, bodies, found);
-  copy_here([](const Node<float>* here, Node<float>* there) { std::copy_n(here, block_nodes, there); });
-  copies_.upload(copies_home_);
-  copy_there(true);
+  for (std::size_t f = 0; f < fields; ++f) at_surfaces_.upload(world, memory, of_field(nodes, f));
 }
 
 VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt, double part) {

@@ -10,6 +10,7 @@
 #include "dreampm/backend/gpu/gap_measure.h"
 #include "dreampm/backend/gpu/launch.h"
 #include "dreampm/backend/gpu/set_memory.h"
+#include "dreampm/backend/gpu/some_blocks.h"
 #include "dreampm/backend/gpu/surface_solver.h"
 
 namespace dreampm::gpu {
@@ -108,9 +109,7 @@ class GridVisit {
   Buffer<DeepNode> deep_nodes_;
   Buffer<ColliderSurface> deep_surfaces_;
   std::vector<std::int32_t> collider_of_group_;
-  Buffer<std::uint32_t> surface_blocks_;
-  Buffer<Node<float>> copies_;
-  std::vector<Node<float>> copies_home_;
+  SomeNodes at_surfaces_;
   GapMeasure gaps_;
   SurfaceSolver surfaces_;
 };

@@ -6,6 +6,7 @@
 #include "dreampm/backend/gpu/contact_gaps.h"
 #include "dreampm/backend/gpu/deep_contact.h"
 #include "dreampm/backend/gpu/field_visit.h"
+#include "dreampm/backend/gpu/flow_kernels.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
 #include "dreampm/backend/gpu/near_particles.h"
@@ -67,6 +68,7 @@ struct MaterialKernels {
 };
 using SortKernels =
     KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
+using FlowKernels = KernelList<OpenColumns, PlaceSeeds, HoldCells, FindEmptyBlocks>;
 /// Those of the grid, and sums.
 using GridKernels =
     KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass,
@@ -76,8 +78,8 @@ using GridKernels =
 using SurfaceKernels =
     KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, ApplyImpulses, FinishSurfaces>;
 template <class... M>
-auto kernels_of(MaterialList<M...>) ->
-    typename JoinLists<GridKernels, SortKernels, SurfaceKernels, typename MaterialKernels<M>::Type...>::Type;
+auto kernels_of(MaterialList<M...>) -> typename JoinLists<GridKernels, SortKernels, FlowKernels, SurfaceKernels,
+                                                          typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 

@@ -9,15 +9,18 @@
 namespace dreampm::gpu {
 
 std::size_t bytes_needed(const World<float>& world) {
-  std::size_t bytes = 0, fields = 0;
+  std::size_t bytes = 0, fields = 0, largest = 0;
   for (const ParticleSet<float>& set : world.sets) {
     const std::size_t columns = 3 + set.state.size() + (set.has_own_velocity() ? 3 : 0);
     // Columns and ids twice, two numbers of a sort, and the motion of a frame: velocity, its
     // gradient, energy and volume.
     constexpr std::size_t sort = 2 * sizeof(std::uint32_t), motion = (3 + 9 + 2) * sizeof(float);
+    const std::size_t taken = world.sinks.empty() ? 0 : sizeof(std::uint32_t);
+    largest = std::max(largest, set.size());
     const std::size_t distance = world.colliders.empty() ? 0 : 4 * sizeof(float);
-    bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + sort + motion + distance);
+    bytes += set.size() * (2 * (columns * sizeof(float) + sizeof(std::uint32_t)) + sort + taken + motion + distance);
   }
+  bytes += std::min(largest, seeds_at_once) * sizeof(PlacedSeed);
   visit_nodes(world.grid, [&](const auto& field, const auto&) { fields += field.needed(world); });
   // Stages of viscosity, where any may come: momenta, the velocities before and their change, by
   // field.

@@ -5,7 +5,9 @@
 
 #include "dreampm/backend/gpu/launch.h"
 #include "dreampm/base/parallel.h"
+#include "dreampm/state/neighbors.h"
 #include "dreampm/state/resize_for_overwrite.h"
+#include "dreampm/state/take_out.h"
 #include "dreampm/state/world_fields.h"
 
 namespace dreampm::gpu {
@@ -13,34 +15,70 @@ namespace {
 
 constexpr std::size_t ways = SortInput::neighbors;
 
-/// The blocks of threads that a kernel needs for `items` of one thread each.
-template <class K>
-std::size_t blocks_for(std::size_t items) {
-  return (items + K::threads - 1) / K::threads;
+/// The grid's blocks that particles of those blocks may reach, rising.
+std::vector<std::uint32_t> grid_blocks_at(const World<float>& world, const std::vector<std::uint32_t>& blocks) {
+  std::vector<std::uint32_t> reached;
+  for (const std::uint32_t b : blocks)
+    for (const std::int32_t g : stencil_blocks_in(world.grid.blocks, world, world.particle_blocks[b]))
+      if (g != BlockList::none) reached.push_back(static_cast<std::uint32_t>(g));
+  std::sort(reached.begin(), reached.end());
+  reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
+  return reached;
 }
 
 }  // namespace
 
-ParticleSort::ParticleSort(Device& device)
-    : device_(&device), moves_(device), targets_(device), before_(device), cells_(device), carried_(device) {}
+ParticleSort::ParticleSort(Device& device, GridLayout& layout, SomePlaces& places, SomeNodes& nodes)
+    : device_(&device),
+      layout_(layout),
+      places_(places),
+      nodes_(nodes),
+      moves_(device),
+      targets_(device),
+      cells_(device) {}
 
 bool ParticleSort::takes(const World<float>& world) {
-  return world.sinks.empty() &&
-         std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
+  return std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
 }
 
 void ParticleSort::operator()(World<float>& world, Memory& memory) {
+  find_taken(world, memory);
   count_moves(world, memory);
   plan_.find_blocks(world);
   find_targets();
   find_cells(world, memory);
   for (std::size_t s = 0; s < world.sets.size(); ++s) move(world, s, memory.sets[s]);
   world.drift = 0;
-  carry_nodes(world, memory);
+  if (layout_.lay(world, cells_from(halves_))) layout_.carry(world, memory);
 }
 
-SortInput ParticleSort::input(const SetMemory& set) const {
-  SortInput in{{set.now.u[0].data(), set.now.u[1].data(), set.now.u[2].data()}, set.block_start.data(), {}};
+/// Finds the particles that sinks take, and hands the device their numbers.
+void ParticleSort::find_taken(World<float>& world, Memory& memory) {
+  while (sets_.size() < world.sets.size()) sets_.emplace_back(*device_);
+  for (SetRoom& room : sets_) room.taken.resize(0), room.taken_start.resize(0);
+  if (!sinks_take(world)) return;
+  const std::vector<std::uint32_t> near = blocks_at_sinks(world, false);
+  places_.download(world, memory, near);
+  nodes_.choose(grid_blocks_at(world, near));
+  for (std::size_t f = 0; f < 2; ++f)
+    if (!world.grid.field(f).empty()) nodes_.download(world, memory, of_field(Target::nodes, f));
+  const std::vector<std::vector<std::uint32_t>> taken = take_out(world, false);
+  for (std::size_t s = 0; s < taken.size(); ++s) {
+    if (taken[s].empty()) continue;
+    std::vector<std::uint32_t> start;
+    for (const std::uint32_t first : world.sets[s].block_start)
+      start.push_back(
+          static_cast<std::uint32_t>(std::lower_bound(taken[s].begin(), taken[s].end(), first) - taken[s].begin()));
+    sets_[s].taken.upload(taken[s]), sets_[s].taken_start.upload(start);
+  }
+}
+
+SortInput ParticleSort::input(const SetMemory& set, const SetRoom& room) const {
+  SortInput in{{set.now.u[0].data(), set.now.u[1].data(), set.now.u[2].data()},
+               set.block_start.data(),
+               room.taken.data(),
+               room.taken_start.data(),
+               {}};
   std::copy(alike_.begin(), alike_.end(), in.alike);
   return in;
 }
@@ -50,10 +88,9 @@ void ParticleSort::count_moves(World<float>& world, Memory& memory) {
   plan_.begin(world);
   alike_ = first_alike(world);
   const std::size_t blocks = plan_.old_blocks().size(), sets = world.sets.size();
-  while (sets_.size() < sets) sets_.emplace_back(*device_);
   moves_.resize(sets * blocks * ways);
   for (std::size_t s = 0; s < sets; ++s)
-    launch(*device_, CountMoves{input(memory.sets[s]), moves_.data() + s * blocks * ways}, blocks);
+    launch(*device_, CountMoves{input(memory.sets[s], sets_[s]), moves_.data() + s * blocks * ways}, blocks);
   resize_for_overwrite(counted_, moves_.size());
   moves_.download(counted_);
   parallel_for(blocks, 64, [&](std::size_t b) {
@@ -94,15 +131,13 @@ void ParticleSort::find_cells(World<float>& world, Memory& memory) {
     room.counts.resize(cells), room.start.resize(cells), room.number.resize(set.now.u[0].size());
     set.next_block_start.upload(plan_.moves(s).start);
     launch(*device_, ClearCounts{room.counts.data(), static_cast<std::int64_t>(cells)}, blocks_for<ClearCounts>(cells));
-    launch(*device_, CountCells{input(set), {targets_.data()}, room.counts.data(), room.number.data()}, old);
+    launch(*device_, CountCells{input(set, room), {targets_.data()}, room.counts.data(), room.number.data()}, old);
     launch(*device_,
            StartCells{room.counts.data(), set.next_block_start.data(), room.start.data(), cells_.data(), s == 0},
            blocks);
   }
   resize_for_overwrite(halves_, cells_.size());
   cells_.download(halves_);
-  resize_for_overwrite(occupied_, blocks);
-  for (std::size_t b = 0; b < blocks; ++b) occupied_[b] = halves_[2 * b] | std::uint64_t{halves_[2 * b + 1]} << 32;
 }
 
 void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memory) {
@@ -114,7 +149,7 @@ void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memo
   memory.next.fit(memory.now);
   memory.next_id.resize(size);
   launch(*device_,
-         FillPlaces{input(memory), {targets_.data()}, room.start.data(), room.number.data(), room.from.data()},
+         FillPlaces{input(memory, room), {targets_.data()}, room.start.data(), room.number.data(), room.from.data()},
          plan_.old_blocks().size());
   launch(*device_, SortPlaces{room.start.data(), memory.next_block_start.data(), room.from.data()}, blocks);
   const bool own = set.has_own_velocity();
@@ -131,22 +166,6 @@ void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memo
   visit_fields(set, [&]<class F>(const F& field, auto& member) {
     if constexpr (F::use.carried)
       if (field.needed(set)) visit_columns(member, [&](auto& column) { resize_for_overwrite(column, size); });
-  });
-}
-
-void ParticleSort::carry_nodes(World<float>& world, Memory& memory) {
-  if (!topology_.lay(world, occupied_)) return;
-  topology_.find_before(world, before_home_);
-  before_.upload(before_home_);
-  const std::size_t blocks = world.grid.blocks.size();
-  visit_nodes(world.grid, [&]<class F>(const F& field, Nodes<float>& nodes) {
-    if constexpr (F::use.carried) {
-      Buffer<Node<float>>& there = memory.nodes[target_of(world.grid, nodes)];
-      carried_.resize(field.needed(world) ? blocks * block_nodes : 0);
-      if (carried_.size() > 0) launch(*device_, CarryNodes{before_.data(), there.data(), carried_.data()}, blocks);
-      std::swap(there, carried_);
-      resize_for_overwrite(nodes, there.size());
-    }
   });
 }
 

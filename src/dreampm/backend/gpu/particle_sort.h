@@ -3,47 +3,49 @@
 #pragma once
 #include <vector>
 
-#include "dreampm/backend/gpu/set_memory.h"
-#include "dreampm/state/grid_topology.h"
+#include "dreampm/backend/gpu/grid_layout.h"
 #include "dreampm/state/regroup_plan.h"
 
 namespace dreampm::gpu {
 
 class ParticleSort {
  public:
-  explicit ParticleSort(Device& device);
-  /// True if a device can sort this world: the host does where sinks take matter, or particles
-  /// carry their motion.
+  /// What it is handed has to outlive it.
+  ParticleSort(Device& device, GridLayout& layout, SomePlaces& places, SomeNodes& nodes);
+  /// True if a device can sort this world: the host does where particles carry their motion.
   static bool takes(const World<float>& world);
   /// Nodes and particles have to be current in `memory`, and are afterwards. The World gets the
-  /// lists of blocks, and its arrays their sizes.
+  /// lists of blocks, and its arrays their sizes. What sinks take the host decides: of the blocks
+  /// that they reach positions and nodes come home, and are overwritten in the World.
   void operator()(World<float>& world, Memory& memory);
 
  private:
   struct SetRoom {
-    explicit SetRoom(Device& device) : counts(device), number(device), start(device), from(device) {}
+    explicit SetRoom(Device& device)
+        : counts(device), number(device), start(device), from(device), taken(device), taken_start(device) {}
     Buffer<std::int32_t> counts, number;
     Buffer<std::uint32_t> start, from;
+    Buffer<std::uint32_t> taken, taken_start;  ///< as SortInput has them; empty where none are
   };
-  SortInput input(const SetMemory& set) const;
+  SortInput input(const SetMemory& set, const SetRoom& room) const;
+  void find_taken(World<float>& world, Memory& memory);
   void count_moves(World<float>& world, Memory& memory);
   void find_targets();
   void find_cells(World<float>& world, Memory& memory);
   void move(World<float>& world, std::size_t set, SetMemory& memory);
-  void carry_nodes(World<float>& world, Memory& memory);
 
   Device* device_;
+  GridLayout& layout_;
+  SomePlaces& places_;
+  SomeNodes& nodes_;
   RegroupPlan<float> plan_;
-  GridTopology<float> topology_;
   Alike alike_{};
   std::vector<SetRoom> sets_;
-  Buffer<std::int32_t> moves_, targets_, before_;
+  Buffer<std::int32_t> moves_, targets_;
   Buffer<std::uint32_t> cells_;
-  Buffer<Node<float>> carried_;
   // On the host.
-  std::vector<std::int32_t> counted_, to_, before_home_;
+  std::vector<std::int32_t> counted_, to_;
   std::vector<std::uint32_t> halves_;
-  std::vector<std::uint64_t> occupied_;
 };
 
 }  // namespace dreampm::gpu

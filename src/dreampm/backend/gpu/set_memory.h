@@ -89,6 +89,14 @@ class SetColumns {
     while (state.size() < columns) state.emplace_back(*device_);
     while (state.size() > columns) state.pop_back();
   }
+  /// `own`: whether there are velocities of their own; `columns`: of state. Contents are undefined
+  /// after it.
+  void resize(std::size_t size, bool own, std::size_t columns) {
+    fit_state(columns);
+    for (Buffer<float>& column : u) column.resize(size);
+    for (Buffer<float>& column : own_velocity) column.resize(own ? size : 0);
+    for (Buffer<float>& column : state) column.resize(size);
+  }
   /// Leaves the last rows out.
   void shorten(std::size_t size) {
     const auto shorten = [size](std::vector<Buffer<float>>& all) {

@@ -15,11 +15,32 @@ namespace dreampm::gpu {
 struct SortInput {
   const float* u[3];
   const std::uint32_t* block_start;  ///< by block of particles, and the end
-  std::uint8_t alike[28];            ///< as Alike
+  /// Numbers of particles that sinks take, rising, and where those of each block begin there, and
+  /// the end; null where they take none.
+  const std::uint32_t *taken, *taken_start;
+  std::uint8_t alike[28];  ///< as Alike
   static constexpr int neighbors = 27;
 
   DM_FN Vec3<float> place(std::uint32_t p) const { return {u[0][p], u[1][p], u[2][p]}; }
-  DM_FN int way(const Vec3<float>& at) const { return alike[neighbor_of(at)]; }
+  /// Where particle `p` of block `b` goes, which is at `at`: the neighbor, or `neighbors` where it
+  /// leaves the world.
+  DM_FN int way(int b, std::uint32_t p, const Vec3<float>& at) const {
+    return taken && is_taken(b, p) ? neighbors : alike[neighbor_of(at)];
+  }
+
+ private:
+  DM_FN bool is_taken(int b, std::uint32_t p) const {
+    const std::uint32_t end = taken_start[b + 1];
+    std::uint32_t low = taken_start[b], high = end;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if (taken[middle] < p)
+        low = middle + 1;
+      else
+        high = middle;
+    }
+    return low < end && taken[low] == p;
+  }
 };
 
 /// Counts the particles of each block that move to each of the 27 around it.
@@ -38,8 +59,10 @@ struct CountMoves {
       if (t < SortInput::neighbors) shared.counts[t] = 0;
     });
     block.each_thread([&](int t) {
-      each_particle<threads>(in.block_start, static_cast<std::uint32_t>(b), t,
-                             [&](std::uint32_t p) { Block::add(shared.counts[in.way(in.place(p))], 1); });
+      each_particle<threads>(in.block_start, static_cast<std::uint32_t>(b), t, [&](std::uint32_t p) {
+        const int way = in.way(b, p, in.place(p));
+        if (way < SortInput::neighbors) Block::add(shared.counts[way], 1);
+      });
     });
     block.each_thread([&](int t) {
       if (t < SortInput::neighbors) counts[std::int64_t{b} * SortInput::neighbors + t] = shared.counts[t];
@@ -57,7 +80,9 @@ struct SortTargets {
   DM_FN void each(const SortInput& in, int old_block, int t, const Body& body) const {
     each_particle<threads>(in.block_start, static_cast<std::uint32_t>(old_block), t, [&](std::uint32_t p) {
       const Vec3<float> at = in.place(p);
-      const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + in.way(at)];
+      const int way = in.way(old_block, p, at);
+      if (way == SortInput::neighbors) return;
+      const std::int32_t to = block[std::int64_t{old_block} * SortInput::neighbors + way];
       if (to >= 0) body(p, std::int64_t{to} * block_nodes + turn_of(at));
     });
   }

@@ -52,7 +52,7 @@ struct PointOfNode {
 /// How a collider meets matter of one field.
 struct CollidingMatter {
   WallType type;
-  bool gapped;    ///< whether matter may come nearer where it has a gap
+  bool gapped;  ///< whether matter may come nearer where it has a gap
   float friction;
   double sticky;  ///< Pa
 };
@@ -83,23 +83,23 @@ struct SurfaceInput {
   Vec3<float> gravity_kick;  ///< m/s
   const ContactPoint* points;
   std::int32_t count;
-  const PointBlock* blocks;           ///< with points
-  const std::uint32_t* node_blocks;   ///< blocks of the grid with nodes of points
-  const ContactNode* nodes;           ///< block_nodes each
-  const std::uint32_t* first;         ///< by such a node, into `points_of`, and the end
+  const PointBlock* blocks;          ///< with points
+  const std::uint32_t* node_blocks;  ///< blocks of the grid with nodes of points
+  const ContactNode* nodes;          ///< block_nodes each
+  const std::uint32_t* first;        ///< by such a node, into `points_of`, and the end
   const PointOfNode* points_of;
   const CollidingMatter* colliders;
-  const std::uint32_t* first_group;   ///< by block with nodes, into `groups`, and the end
+  const std::uint32_t* first_group;  ///< by block with nodes, into `groups`, and the end
   const SurfaceGroup* groups;
-  const std::int32_t* gaps;           ///< as GapInput; null where matter has none
-  float no_gap;                       ///< cells: that where no matter is near
+  const std::int32_t* gaps;  ///< as GapInput; null where matter has none
+  float no_gap;              ///< cells: that where no matter is near
   PointState* point_states;
-  Vec3<float>* changes;               ///< impulses of points in the last step [kg m/s]
-  float* velocity_weights;            ///< 27 a point: of a node's velocity in that of the point [1]
-  float* inverse_masses;              ///< as points_of: velocity of the node per impulse [1/kg]
+  Vec3<float>* changes;     ///< impulses of points in the last step [kg m/s]
+  float* velocity_weights;  ///< 27 a point: of a node's velocity in that of the point [1]
+  float* inverse_masses;    ///< as points_of: velocity of the node per impulse [1/kg]
   NodeState* node_states;
-  std::int32_t* fastest2;             ///< less the bits of the square of the largest speed
-  SourceTerms* given;                 ///< by entry of groups
+  std::int32_t* fastest2;  ///< less the bits of the square of the largest speed
+  SourceTerms* given;      ///< by entry of groups
 
   /// The number of a node in the grid, and the node.
   DM_FN std::int64_t in_grid(std::int64_t number) const {
@@ -178,8 +178,9 @@ struct FindActingPoints {
         const Vec3i node = p.node(m) - Vec3i{1, 1, 1};
         const std::int32_t slot = all.blocks[p.block].gaps[block_around(node)];
         if (slot < 0) continue;
-        gap = min(gap, std::bit_cast<float>(all.gaps[std::int64_t{slot} * block_gaps + side * block_nodes +
-                                                     SurfaceInput::in_block(node)]));
+        gap = min(gap,
+                  std::bit_cast<float>(
+                      all.gaps[std::int64_t{slot} * block_gaps + side * block_nodes + SurfaceInput::in_block(node)]));
       }
     }
     return gap;
@@ -225,7 +226,8 @@ struct FindNodeAreas {
       all.inverse_masses[i] = inverse_mass;
       const float area = p.area * inverse_mass * mass;
       state.facing = state.facing + Node<float>{p.normal.x, p.normal.y, p.normal.z, 1} * area;
-      if (all.moves && !at.sticks) state.surface += p.velocity_at(p.node(of.m), static_cast<float>(all.in.places.dx)) * area;
+      if (all.moves && !at.sticks)
+        state.surface += p.velocity_at(p.node(of.m), static_cast<float>(all.in.places.dx)) * area;
       if (area > most) most = area, state.collider = p.collider;
     }
     // The mean over the points at a node, by their areas.
@@ -287,12 +289,11 @@ struct DescendPoints {
       const CollidingMatter collider = all.colliders[p.collider];
       const float* const weights = all.velocity_weights + 27 * std::int64_t{i};
       Vec3<float> v{0, 0, 0};
-      PointWeights(p).each(all, p, [&](int m, const Vec3i&, float, std::int64_t n) {
-        v += velocity(all.node(n)) * weights[m];
-      });
-      float now = descended(state.extrapolated, dot(v, p.normal) - state.surface_speed, state.effective_mass,
-                            state.approach, collider.type == WallType::separate,
-                            least_impulse(collider.sticky, all.in.places.dx, all.per_dt));
+      PointWeights(p).each(
+          all, p, [&](int m, const Vec3i&, float, std::int64_t n) { v += velocity(all.node(n)) * weights[m]; });
+      float now =
+          descended(state.extrapolated, dot(v, p.normal) - state.surface_speed, state.effective_mass, state.approach,
+                    collider.type == WallType::separate, least_impulse(collider.sticky, all.in.places.dx, all.per_dt));
       const int now_at = step & 1, before_at = 1 - now_at;
       if (step > 0 && p.limiter >= 0) {
         const PointState& limiter = all.point_states[p.limiter];
@@ -352,8 +353,7 @@ struct FinishSurfaces {
     for (std::uint32_t g = all.first_group[b]; g < all.first_group[b + 1]; ++g) {
       const SurfaceGroup group = all.groups[g];
       block.each_thread([&](int t) {
-        shared.given[t] =
-            shared.collider[t] == group.collider ? shared.own[t] : ImpulseTerms<float>::none();
+        shared.given[t] = shared.collider[t] == group.collider ? shared.own[t] : ImpulseTerms<float>::none();
       });
       add_up_threads<threads>(block, shared.given);
       block.each_thread([&](int t) {

@@ -47,17 +47,26 @@ void SurfaceSolver::find_points(const Obstacles& obstacles, const SurfaceContact
       const SurfacePoint& from = surface[p - point_block.begin];
       const auto& known = host.points()[p];
       ContactPoint& to = points[p];
-      to = {from.at,   from.normal,        from.from_edge, from.velocity, from.spin, from.area, static_cast<std::uint32_t>(blocks.size()),
-            from.deep, known.edge_limiter, {},             known.limits,  from.collider};
+      to = {from.at,
+            from.normal,
+            from.from_edge,
+            from.velocity,
+            from.spin,
+            from.area,
+            static_cast<std::uint32_t>(blocks.size()),
+            from.deep,
+            known.edge_limiter,
+            {},
+            known.limits,
+            from.collider};
       std::copy(from.first.begin(), from.first.end(), to.first);
     }
     PointBlock& block = blocks.emplace_back();
     for (std::size_t n = 0; n < 27; ++n) {
       const std::int32_t around = point_block.around[n];
       block.nodes[n] = around == BlockList::none ? -1 : host.node_block_of_block(static_cast<std::size_t>(around));
-      block.gaps[n] = around == BlockList::none || gaps.gaps_of().empty()
-                          ? -1
-                          : gaps.gaps_of()[static_cast<std::size_t>(around)];
+      block.gaps[n] =
+          around == BlockList::none || gaps.gaps_of().empty() ? -1 : gaps.gaps_of()[static_cast<std::size_t>(around)];
     }
   }
   points_.upload(points), blocks_.upload(blocks);
@@ -75,8 +84,9 @@ void SurfaceSolver::find_nodes(const Obstacles& obstacles, const SurfaceContact<
     const std::vector<ObstacleNode>& near = obstacles.at(node_block.block);
     for (std::size_t n = 0; n < block_nodes; ++n) {
       const bool sticks = (node_block.sticking >> n & 1) != 0;
-      const Vec3<float> none{}, axis = sticks ? node_block.axis[n] : none,
-                        velocity = sticks ? static_cast<Vec3<float>>(near[node_block.held_by[n]].velocity) : none;
+      const Vec3<float> none{},
+          axis = sticks ? node_block.axis[n] : none,
+          velocity = sticks ? static_cast<Vec3<float>>(near[node_block.held_by[n]].velocity) : none;
       nodes[first + n] = {node_block.open_fraction[n], sticks, node_block.collider[n], axis, velocity};
     }
   }
