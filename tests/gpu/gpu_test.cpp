@@ -200,6 +200,7 @@ class Counting final : public gpu::Device {
   explicit Counting(std::unique_ptr<gpu::Device> device) : device_(std::move(device)) {}
   std::string about() const override { return device_->about(); }
   std::string isa() const override { return device_->isa(); }
+  DeviceId id() const override { return device_->id(); }
   Memory memory() const override { return device_->memory(); }
   void* allocate(std::size_t bytes) override {
     void* const memory = device_->allocate(bytes);
@@ -216,6 +217,8 @@ class Counting final : public gpu::Device {
   void download(void* to, const void* from, std::size_t bytes) override {
     downloaded += bytes, ++downloads, device_->download(to, from, bytes);
   }
+  void copy(void* to, const void* from, std::size_t bytes) override { device_->copy(to, from, bytes); }
+  void make_wait(std::uintptr_t stream) override { device_->make_wait(stream); }
   void launch(int number, const void* arguments, int blocks) override {
     ++launches, device_->launch(number, arguments, blocks);
   }
@@ -259,6 +262,38 @@ TEST(Gpu, OnlySumsTravelInAStep) {
     }
     EXPECT_GE(sorts, 1) << material;
   }
+}
+
+// Velocities of particles stay there until somebody reads them.
+TEST(Gpu, MotionTravelsWhereItIsRead) {
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = mixed_world<float>("snow", seeds);
+  auto counting = std::make_unique<Counting>(gpu::make_host_device());
+  Counting& device = *counting;
+  const auto gpu = make_gpu_backend("gpu", std::move(counting));
+  begin(w, *gpu, seeds);
+  Motion<float> motion;
+  for (int k = 0; k < 3; ++k) step<float>(w, *gpu, &motion, -std::numeric_limits<double>::infinity());
+  device.clear();
+  const auto arrays = gpu->device_particles(w, motion, 1, {true, true, true});
+  ASSERT_TRUE(arrays);
+  EXPECT_EQ(device.downloaded, 0u);
+  EXPECT_LE(device.uploaded, w.particle_blocks.size() * sizeof(Vec3i));
+  EXPECT_EQ(device.launches, 1);
+  gpu->download(w, motion, MatterFields::motion);
+  EXPECT_GE(device.downloaded, w.particles() * (3 + 9 + 2) * sizeof(float));
+  std::vector<Vec3f> velocity(arrays->size());
+  arrays->velocity->download(velocity.data());
+  EXPECT_EQ(velocity, motion.sets.at(1).velocity);
+  // Once is enough.
+  device.clear();
+  gpu->download(w, motion, MatterFields::motion);
+  EXPECT_EQ(device.downloaded, 0u);
+  // What an edit changed is what readers see.
+  motion.sets[1].velocity[0] = {1, 2, 3};
+  gpu->upload(w, motion, MatterFields::motion);
+  gpu->device_particles(w, motion, 1, {false, true, false})->velocity->download(velocity.data());
+  EXPECT_EQ(velocity, motion.sets[1].velocity);
 }
 
 // The step says where a particle's state is no number.

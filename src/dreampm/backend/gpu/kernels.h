@@ -6,6 +6,7 @@
 #include "dreampm/backend/gpu/deep_contact.h"
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
+#include "dreampm/backend/gpu/particle_copy.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/stage_visit.h"
 #include "dreampm/backend/gpu/viscous_pass.h"
@@ -66,9 +67,11 @@ using SortKernels =
 using GridKernels = KernelList<SumArenas, BeginVisit, FoldImages, FinishVisit, ReflectImages, AddImageMass, MeetDeep,
                                CopyBlocks, BeginStage, EndStage, ClearGaps, MeasureGaps, FindWallGaps, AddUp<BlockSums>,
                                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+/// Those of programs that read particles on the device.
+using ReaderKernels = KernelList<CopyParticles>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) ->
-    typename JoinLists<GridKernels, SortKernels, typename MaterialKernels<M>::Type...>::Type;
+    typename JoinLists<GridKernels, SortKernels, ReaderKernels, typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 
