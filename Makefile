@@ -162,7 +162,7 @@ build/setup-python.stamp: tools/packages-python.txt tools/python_env tools/setup
 # The same build, with the package in it from then on.
 test-python: build/build.ninja build/setup-python.stamp
 	@cmake build -DDM_PYTHON=ON -DPython_EXECUTABLE=$(CURDIR)/build/python-env/bin/python
-	@$(NINJA) -C build dm_python_stub dreampm
+	@$(NINJA) -C build dm_python_stub dreampm cuda_stand_in_$$(cat VERSION)
 	@$(CTEST) --test-dir build -R '^python\.'
 
 # Which Python the wheel is for: of 3.12 and newer one works with all of them.

@@ -1,6 +1,7 @@
 // Everything that programs include.
 #pragma once
 #include "dreampm/colliders.h"
+#include "dreampm/device_arrays.h"
 #include "dreampm/error.h"
 #include "dreampm/host.h"
 #include "dreampm/image.h"

@@ -39,7 +39,7 @@ struct AttributeView {
   std::size_t size() const { return values.size() / width; }
 };
 
-/// The arrays of particles that `Simulation::visit` shows.
+/// The arrays of particles that `Simulation::visit` and `Simulation::device_particles` show.
 struct ParticleFields {
   bool position = true, velocity = false, id = false;
 };

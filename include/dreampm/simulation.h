@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "dreampm/colliders.h"
+#include "dreampm/device_arrays.h"
 #include "dreampm/error.h"
 #include "dreampm/host.h"
 #include "dreampm/matter.h"
@@ -151,6 +152,12 @@ class Simulation {
   /// in memory, which is another one after each step. Nothing is copied but what a batch shows.
   void visit(std::string_view material, const ParticleFields& fields,
              const std::function<void(const ParticleBatch&)>& see) const;
+  /// Copies the particles of a material for programs on the GPU where they lie; nothing goes to the
+  /// host. Arrays are in the order of memory, which may change with each step, with the ids beside.
+  /// Throws InputError where the backend, or the projection, keeps particles in the host's memory,
+  /// and RunError where the device has no room, or where velocities are not known because the steps
+  /// before were interrupted.
+  DeviceParticles device_particles(std::string_view material, const ParticleFields& fields = {true, true, true}) const;
   /// All particles that are there have ids below this one, and those that come in later do not.
   std::uint32_t next_id() const;
 

@@ -10,7 +10,7 @@ turns a scene file into a film. SI units, y up. Lines that the library reports g
 logging.getLogger("dreampm").
 """
 from ._dreampm import (
-    BodyState, CheckpointFiles, Collider, Colliders, ColliderShape, Contact, Error, FrameEvent, Frames, SpringAnchor, InputError, LedgerFile, Material,
+    BodyState, CheckpointFiles, Collider, Colliders, ColliderShape, Contact, DeviceArray, DeviceParticles, Error, FrameEvent, Frames, SpringAnchor, InputError, LedgerFile, Material,
     Materials, MaterialState, Mesh, Names, NearCollider, NumericalFailure, ParticleCounts, ParticleFiles, Particles,
     ParticleSets, Pose, ProbeFiles, RayHit, RunError, Scene, Shape, Simulation, Snapshot, Stepping, StepReport, VelocityBrush, Totals,
     Twist, Walls, box, cast_ray, check, colliders_near, contacts, cylinder, make, mesh, plane, preset,
@@ -18,7 +18,7 @@ from ._dreampm import (
 from . import model
 
 __all__ = [
-    "BodyState", "CheckpointFiles", "Collider", "ColliderShape", "Colliders", "Contact", "Error", "FrameEvent", "Frames", "SpringAnchor",
+    "BodyState", "CheckpointFiles", "Collider", "ColliderShape", "Colliders", "Contact", "DeviceArray", "DeviceParticles", "Error", "FrameEvent", "Frames", "SpringAnchor",
     "InputError", "LedgerFile", "Material", "MaterialState", "Materials", "Mesh", "Names", "NearCollider",
     "NumericalFailure", "ParticleCounts", "ParticleFiles", "ParticleSets", "Particles", "Pose", "ProbeFiles", "RayHit", "RunError", "Scene", "Shape",
     "Simulation", "Snapshot", "StepReport", "Stepping", "VelocityBrush", "Totals", "Twist", "Walls", "__version__", "box",

@@ -12,6 +12,7 @@ NB_MODULE(_dreampm, m) {
   python::bind_model(m);
   python::bind_scene(m);
   python::bind_matter(m);
+  python::bind_device_arrays(m);
   python::bind_parts(m);
   python::bind_reads(m);
   python::bind_simulation(m);

@@ -174,6 +174,16 @@ void bind_particle_sets(nb::module_& m) {
   all.def("__getitem__", [](const ParticleSets& part, const std::string& material) {
     return part.held().call([&](Simulation& s) { return s.particles(material); });
   });
+  all.def(
+      "on_device",
+      [](const ParticleSets& part, const std::string& material) {
+        return part.held().call([&](Simulation& s) { return s.device_particles(material); });
+      },
+      nb::arg("material"), nb::sig("def on_device(self, material: str) -> DeviceParticles"),
+      "The particles of a material as arrays on the GPU that simulates, of the backend cuda: copied there, in the "
+      "order\n"
+      "of memory, with nothing brought to the host. Raises InputError where the backend keeps particles in the host's\n"
+      "memory: sim.particles[material] has those as arrays of numpy.");
   as_mapping(all);
 }
 

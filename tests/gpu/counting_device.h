@@ -17,6 +17,7 @@ class Counting final : public gpu::Device {
   explicit Counting(std::unique_ptr<gpu::Device> device) : device_(std::move(device)) {}
   std::string about() const override { return device_->about(); }
   std::string isa() const override { return device_->isa(); }
+  DeviceId id() const override { return device_->id(); }
   Memory memory() const override { return {limit - taken, limit}; }
   void* allocate(std::size_t bytes) override {
     if (taken + bytes > limit) throw std::bad_alloc();
@@ -34,6 +35,8 @@ class Counting final : public gpu::Device {
   void download(void* to, const void* from, std::size_t bytes) override {
     downloaded += bytes, ++downloads, device_->download(to, from, bytes);
   }
+  void copy(void* to, const void* from, std::size_t bytes) override { device_->copy(to, from, bytes); }
+  void make_wait(std::uintptr_t stream) override { device_->make_wait(stream); }
   void launch(int number, const void* arguments, int blocks) override {
     ++launches, device_->launch(number, arguments, blocks);
   }

@@ -67,7 +67,7 @@ TEST_F(Cuda, NamesTheDeviceThatFails) {
   EXPECT_EQ(small.code, 1);
   EXPECT_THAT(small.err,
               AllOf(HasSubstr("80 particles need about"), HasSubstr("0.0 MB are free"), HasSubstr("spacing")));
-  EXPECT_THAT(chosen("4", "info --device").out, HasSubstr("CUDA device 0: there is no device of that number"));
+  EXPECT_THAT(chosen("5", "info --device").out, HasSubstr("CUDA device 0: there is no device of that number"));
 }
 
 }  // namespace

@@ -234,6 +234,38 @@ TEST(Gpu, OnlySumsTravelInAStep) {
   }
 }
 
+// Velocities of particles stay there until somebody reads them.
+TEST(Gpu, MotionTravelsWhereItIsRead) {
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = mixed_world<float>("snow", seeds);
+  auto counting = std::make_unique<Counting>(gpu::make_host_device());
+  Counting& device = *counting;
+  const auto gpu = make_gpu_backend("gpu", std::move(counting));
+  begin(w, *gpu, seeds);
+  Motion<float> motion;
+  for (int k = 0; k < 3; ++k) step<float>(w, *gpu, &motion, -std::numeric_limits<double>::infinity());
+  device.clear();
+  const auto arrays = gpu->device_particles(w, motion, 1, {true, true, true});
+  ASSERT_TRUE(arrays);
+  EXPECT_EQ(device.downloaded, 0u);
+  EXPECT_LE(device.uploaded, w.particle_blocks.size() * sizeof(Vec3i));
+  EXPECT_EQ(device.launches, 1);
+  gpu->download(w, motion, MatterFields::motion);
+  EXPECT_GE(device.downloaded, w.particles() * (3 + 9 + 2) * sizeof(float));
+  std::vector<Vec3f> velocity(arrays->size());
+  arrays->velocity->download(velocity.data());
+  EXPECT_EQ(velocity, motion.sets.at(1).velocity);
+  // Once is enough.
+  device.clear();
+  gpu->download(w, motion, MatterFields::motion);
+  EXPECT_EQ(device.downloaded, 0u);
+  // What an edit changed is what readers see.
+  motion.sets[1].velocity[0] = {1, 2, 3};
+  gpu->upload(w, motion, MatterFields::motion);
+  gpu->device_particles(w, motion, 1, {false, true, false})->velocity->download(velocity.data());
+  EXPECT_EQ(velocity, motion.sets[1].velocity);
+}
+
 // The step says where a particle's state is no number.
 TEST(Gpu, StressThatIsNoNumberIsFound) {
   const auto gpu = host_gpu();

@@ -4,6 +4,7 @@
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "dreampm/backend/motion.h"
 #include "dreampm/backend/pass_stats.h"
 #include "dreampm/backend/reductions.h"
+#include "dreampm/device_arrays.h"
+#include "dreampm/particles.h"
 #include "dreampm/state/regroup.h"
 #include "dreampm/state/world.h"
 
@@ -95,6 +98,15 @@ class Backend {
   /// and reductions use them. The order and the number of particles may differ only where all of
   /// MatterFields::particles are named.
   virtual void upload(const World<R>& /*world*/, const Motion<R>& /*motion*/, MatterFields /*fields*/) {}
+
+  /// Copies what `fields` name of the particles of a set, for programs on the device where they
+  /// lie: in their order, which is that of the World's arrays. Nothing where matter lies in the
+  /// memory of the host. `motion`: that of the particles as they stand, as it was given to the last
+  /// pass or to `upload`; read only where velocities are asked for.
+  virtual std::optional<DeviceParticles> device_particles(const World<R>& /*world*/, const Motion<R>& /*motion*/,
+                                                          std::size_t /*set*/, const ParticleFields& /*fields*/) {
+    return std::nullopt;
+  }
 
   // Reductions: sums over particles and nodes as the verbs left them, without a download. In a
   // fixed order: the same bits for any number of threads. `motion`: that of the world's last pass,

@@ -177,6 +177,27 @@ void Simulation::visit(std::string_view material, const ParticleFields& fields,
   });
 }
 
+DeviceParticles Simulation::device_particles(std::string_view material, const ParticleFields& fields) const {
+  const std::size_t m = impl_->material(material);
+  return impl_->with_engine([&](auto& engine) -> DeviceParticles {
+    if (engine.world().settings.solver == SolverKind::projection)
+      fail_input(
+          "device_particles: time.solver is projection, which computes in the host's memory: `particles` has its "
+          "arrays "
+          "there");
+    if (fields.velocity && !engine.motion_is_current())
+      fail_run("device_particles: velocities are not known, for the steps before were interrupted: take one more step");
+    const auto made = engine.backend().device_particles(engine.world(), engine.motion(), m, fields);
+    if (!made)
+      fail_input(
+          "device_particles: backend {} keeps particles in the host's memory: `particles` has its arrays there; "
+          "backend "
+          "cuda has arrays on a GPU",
+          engine.backend().name());
+    return *made;
+  });
+}
+
 std::uint32_t Simulation::next_id() const {
   return impl_->with_engine(
       [&](auto& engine) { return engine.world().emitters.empty() ? impl_->state.next_id : engine.world().next_id; });

@@ -22,6 +22,7 @@
 #include "dreampm/state/grid.h"
 #include "dreampm/state/inflow.h"
 #include "dreampm/state/rigid_body.h"
+#include "dreampm/state/scene_position.h"
 
 namespace dreampm {
 
@@ -229,18 +230,16 @@ struct World {
   }
   /// The scene position [m] of node `n`.
   Vec3d node_position(const Vec3i& n) const { return origin + static_cast<Vec3d>(n - low) * dx; }
+  /// From blocks of particles to the scene.
+  ScenePosition scene_position() const {
+    ScenePosition to{origin, dx, low, {}};
+    for (int a = 0; a < 3; ++a)
+      if (periodic[static_cast<std::size_t>(a)]) to.period[a] = high[a] - low[a];
+    return to;
+  }
   /// The scene position [m] of a particle of block `b` at `at`, as in ParticleSet::u, within the
   /// domain on periodic axes.
-  Vec3d position(const Vec3i& b, const Vec3<R>& at) const {
-    Vec3d cells = static_cast<Vec3d>(first_stencil(b) - low);
-    for (int a = 0; a < 3; ++a) {
-      cells[a] += 0.5 + static_cast<double>(at[a]);
-      if (!periodic[static_cast<std::size_t>(a)]) continue;
-      const double count = high[a] - low[a];
-      cells[a] -= cells[a] < 0 ? -count : cells[a] >= count ? count : 0;
-    }
-    return origin + cells * dx;
-  }
+  Vec3d position(const Vec3i& b, const Vec3<R>& at) const { return scene_position()(b, at); }
   /// A particle's block, within the domain on periodic axes, and its place there.
   struct BlockPosition {
     Vec3i block;

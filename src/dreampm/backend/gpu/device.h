@@ -1,15 +1,19 @@
 // A device: memory of its own, and kernels that work there.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dreampm/device_arrays.h"
+
 namespace dreampm::gpu {
 
-/// Calls come from one thread, and take effect in their order.
+/// Calls come from one thread, and take effect in their order. Those that arrays which outlive a
+/// simulation make may come from any: allocate, release, copy, download, make_wait.
 class Device {
  public:
   virtual ~Device() = default;
@@ -17,6 +21,8 @@ class Device {
   virtual std::string about() const = 0;
   /// The kind of device and compiler that decide the bits.
   virtual std::string isa() const = 0;
+  /// Which it is, for other programs.
+  virtual DeviceId id() const = 0;
   /// Bytes of memory that are free, and of all.
   struct Memory {
     std::size_t free, all;
@@ -28,6 +34,11 @@ class Device {
   virtual void upload(void* to, const void* from, std::size_t bytes) = 0;
   /// Waits for the kernels launched before.
   virtual void download(void* to, const void* from, std::size_t bytes) = 0;
+  /// Within its memory.
+  virtual void copy(void* to, const void* from, std::size_t bytes) = 0;
+  /// Makes a stream of another program wait for all that was asked for before, as
+  /// DeviceArray::make_wait.
+  virtual void make_wait(std::uintptr_t stream) = 0;
   /// Launches kernel `number` of the list with that many blocks of threads. `arguments`: the kernel
   /// itself. Throws RunError where an earlier one failed.
   virtual void launch(int number, const void* arguments, int blocks) = 0;

@@ -1,7 +1,6 @@
 // Force fields at the nodes of the grid on a device: as BlockVisit::momentum_to_velocity applies
 // them, and their work.
 #pragma once
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -51,7 +50,11 @@ class FieldStep {
   template <class... S>
   struct Room<std::variant<S...>> {
     static_assert((std::is_trivially_copyable_v<S> && ...), "a field's step is copied to the device as it stands");
-    static constexpr std::size_t size = std::max({sizeof(S)...});
+    static constexpr std::size_t size = [] {
+      std::size_t most = 0;
+      ((most = sizeof(S) > most ? sizeof(S) : most), ...);
+      return most;
+    }();
   };
   Box3d box_;
   std::int32_t kind_;

@@ -10,6 +10,7 @@
 #include "dreampm/backend/gpu/collider_nodes.h"
 #include "dreampm/backend/gpu/grid_visit.h"
 #include "dreampm/backend/gpu/memory_need.h"
+#include "dreampm/backend/gpu/particle_arrays.h"
 #include "dreampm/backend/gpu/particle_inserts.h"
 #include "dreampm/backend/gpu/particle_passes.h"
 #include "dreampm/backend/gpu/particle_sort.h"
@@ -41,13 +42,15 @@ class Gpu final : public Backend<float> {
         visit_(*device_),
         stages_(*device_),
         thin_(*device_),
-        collider_nodes_(*device_) {}
+        collider_nodes_(*device_),
+        arrays_(device_) {}
   std::string_view name() const override { return name_; }
   std::string_view isa() const override { return isa_; }
 
   void attach(const World<float>& world) override {
     obstacles_.forget();
     home_ = MatterFields::all;
+    motion_at_ = Place::home;
     whole_ = true;
     const Change change(*this);
     gpu::check_room(*device_, world);
@@ -125,7 +128,7 @@ class Gpu final : public Backend<float> {
     thin_.outdate();
     swap_fields(world.grid, next_);
     home_ = includes(home_, MatterFields::id) ? MatterFields::id : MatterFields::none;
-    if (motion) passes_.download_motion(world, *motion);
+    if (motion) motion_at_ = Place::device;
     return total;
   }
 
@@ -142,7 +145,12 @@ class Gpu final : public Backend<float> {
     dreampm::scatter_particles(world, motion, obstacles_);
   }
 
-  void download(World<float>& world, Motion<float>&, MatterFields fields) override { bring_home(world, fields); }
+  void download(World<float>& world, Motion<float>& motion, MatterFields fields) override {
+    bring_home(world, fields);
+    if (!includes(fields, MatterFields::motion) || motion_at_ != Place::device) return;
+    passes_.download_motion(world, motion);
+    motion_at_ = Place::both;
+  }
   void download_near(World<float>& world, std::span<const Box3d> boxes) override {
     if (!includes(home_, MatterFields::position)) some_places_.download(world, memory_, blocks_near(world, boxes));
   }
@@ -157,14 +165,20 @@ class Gpu final : public Backend<float> {
       if (includes(fields, MatterFields::id)) memory_.sets[s].id.upload(world.sets[s].id);
     }
     if (includes(fields, MatterFields::nodes)) nodes_there_ = false;
+    if (includes(fields, MatterFields::motion)) motion_at_ = Place::home;
     home_ = home_ | fields;
+  }
+  std::optional<DeviceParticles> device_particles(const World<float>& world, const Motion<float>& motion,
+                                                  std::size_t set, const ParticleFields& fields) override {
+    check_whole();
+    return arrays_(world, set, memory_.sets.at(set), motion_at_ == Place::home ? &motion : nullptr, fields);
   }
 
   Balance balance(const World<float>& world, const Motion<float>& motion) override {
-    return dreampm::balance(at_home(world, MatterFields::particles), motion);
+    return dreampm::balance(at_home(world, MatterFields::particles), at_home(world, motion));
   }
   double stress_power(const World<float>& world, const Motion<float>& motion) override {
-    return dreampm::stress_power(at_home(world, MatterFields::particles), motion);
+    return dreampm::stress_power(at_home(world, MatterFields::particles), at_home(world, motion));
   }
   ImpulseSum grid_momentum(const World<float>& world, NodesHold hold) override {
     return dreampm::grid_momentum(at_home(world, MatterFields::nodes), hold);
@@ -213,6 +227,12 @@ class Gpu final : public Backend<float> {
     bring_home(copy_, fields);
     home_ = before;
     return copy_;
+  }
+  /// The motion of the last pass; a copy of it where `given` is not current.
+  const Motion<float>& at_home(const World<float>& world, const Motion<float>& given) {
+    if (motion_at_ != Place::device) return given;
+    passes_.download_motion(world, motion_);
+    return motion_;
   }
   /// The whole world, which is at home.
   void upload_particles(const World<float>& world) {
@@ -271,7 +291,7 @@ class Gpu final : public Backend<float> {
     beside_ = std::move(beside);
   }
 
-  std::unique_ptr<gpu::Device> device_;
+  std::shared_ptr<gpu::Device> device_;  ///< arrays that left it keep it, too
   std::string name_, isa_;
   gpu::Memory memory_;
   Obstacles obstacles_;
@@ -287,6 +307,7 @@ class Gpu final : public Backend<float> {
   gpu::ViscousStages stages_;
   gpu::ThinDistances thin_;
   gpu::ColliderNodes collider_nodes_;
+  gpu::ParticleArrays arrays_;
   std::vector<StencilBlocks> stencil_blocks_;         ///< by block of particles
   GridFields<float> next_;                            ///< its block list stays empty
   std::optional<std::vector<std::uint32_t>> beside_;  ///< blocks of particles with colliders near, as Memory::beside
@@ -294,8 +315,11 @@ class Gpu final : public Backend<float> {
   /// nodes are. Its particles always are.
   MatterFields home_ = MatterFields::all;
   bool nodes_there_ = false;
-  bool whole_ = true;  ///< see Change
-  World<float> copy_;  ///< for at_home()
+  /// Where the motion of the last pass that was asked for one is current.
+  enum class Place { home, device, both } motion_at_ = Place::home;
+  bool whole_ = true;     ///< see Change
+  World<float> copy_;     ///< for at_home()
+  Motion<float> motion_;  ///< the same
 };
 
 }  // namespace

@@ -39,6 +39,7 @@ class HostDevice final : public Device {
   explicit HostDevice(ThreadOrder order) : order_(order) {}
   std::string about() const override { return "this machine, thread after thread"; }
   std::string isa() const override { return "host"; }
+  DeviceId id() const override { return {DeviceKind::host, 0}; }
   Memory memory() const override {
     constexpr std::size_t much = std::numeric_limits<std::size_t>::max() / 2;
     return {much, much};
@@ -52,6 +53,8 @@ class HostDevice final : public Device {
   void release(void* memory) noexcept override { std::free(memory); }
   void upload(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
   void download(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
+  void copy(void* to, const void* from, std::size_t bytes) override { std::memcpy(to, from, bytes); }
+  void make_wait(std::uintptr_t) override {}
   void launch(int number, const void* arguments, int blocks) override {
     launches.of[number](arguments, blocks, order_);
   }

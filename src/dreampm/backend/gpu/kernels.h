@@ -10,6 +10,7 @@
 #include "dreampm/backend/gpu/grid_sum.h"
 #include "dreampm/backend/gpu/image_layers.h"
 #include "dreampm/backend/gpu/near_particles.h"
+#include "dreampm/backend/gpu/particle_copy.h"
 #include "dreampm/backend/gpu/solid_contact.h"
 #include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/backend/gpu/stage_visit.h"
@@ -77,9 +78,11 @@ using GridKernels =
                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 using SurfaceKernels =
     KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, ApplyImpulses, FinishSurfaces>;
+/// Those of programs that read particles on the device.
+using ReaderKernels = KernelList<CopyParticles>;
 template <class... M>
 auto kernels_of(MaterialList<M...>) -> typename JoinLists<GridKernels, SortKernels, FlowKernels, SurfaceKernels,
-                                                          typename MaterialKernels<M>::Type...>::Type;
+                                                          ReaderKernels, typename MaterialKernels<M>::Type...>::Type;
 
 using Kernels = decltype(kernels_of(Materials{}));
 

@@ -171,6 +171,8 @@ class SetMemory {
     const std::size_t n = now.u[0].size();
     velocity_.resize(n), gradient_.resize(n), energy_.resize(n), volume_ratio_.resize(n);
   }
+  /// The velocities of the last pass that kept its motion, in its order [m/s].
+  const Buffer<Vec3<float>>& velocity() const { return velocity_; }
   /// Makes a pass write its motion there.
   void output_to(PassOutput& out) const {
     const bool any = energy_.size() > 0;

@@ -279,9 +279,11 @@ typename SolidSteps<R>::Kinetic SolidSteps<R>::run(World<R>& world, const std::v
   });
   const int parts = pushed ? push_parts : 1;
   const auto add = [&](double times) {
+    backend_->download(solids_, motion_, MatterFields::id | MatterFields::motion);
     const double before = pushed ? this->kinetic() : 0;
     push(pushes, times / parts);
     kinetic.pushed += pushed ? this->kinetic() - before : 0;
+    backend_->upload(solids_, motion_, MatterFields::motion);
   };
   int count = 0;
   for (int part = 1; part <= parts; ++part) {

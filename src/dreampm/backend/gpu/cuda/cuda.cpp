@@ -85,10 +85,14 @@ class CudaDevice final : public Device {
     }
     isa_ = fmt::format("sm_{}{}", major, minor);
     about_ = fmt::format("{}, {:.1f} GiB, {}", name, static_cast<double>(bytes) / (1u << 30), isa_);
+    int kind = 0;
+    call_.id(device_, &kind, &id_.number);
+    id_.kind = static_cast<DeviceKind>(kind);
   }
   ~CudaDevice() override { call_.close(device_); }
   std::string about() const override { return about_; }
   std::string isa() const override { return isa_; }
+  DeviceId id() const override { return id_; }
   Memory memory() const override {
     Memory m{};
     check(call_.memory(device_, &m.free, &m.all), "asking for its memory");
@@ -112,6 +116,12 @@ class CudaDevice final : public Device {
   void download(void* to, const void* from, std::size_t bytes) override {
     check(call_.download(device_, to, from, bytes), "copying from it");
   }
+  void copy(void* to, const void* from, std::size_t bytes) override {
+    check(call_.copy(device_, to, from, bytes), "copying within it");
+  }
+  void make_wait(std::uintptr_t stream) override {
+    check(call_.make_wait(device_, stream), "making a stream wait for it");
+  }
   void launch(int number, const void* arguments, int blocks) override {
     check(call_.launch(device_, number, arguments, blocks), "launching a kernel");
   }
@@ -125,6 +135,7 @@ class CudaDevice final : public Device {
   const CudaLibrary& call_;
   void* device_;
   std::string about_, isa_;
+  DeviceId id_;
 };
 
 }  // namespace

@@ -16,11 +16,16 @@ struct CudaLibrary {
   void (*close)(void* device);
   /// Name, compute capability and memory in bytes.
   const char* (*about)(void* device, const char** name, int* major, int* minor, std::size_t* memory);
+  /// Kind and number, as DeviceId.
+  void (*id)(void* device, int* kind, int* number);
   const char* (*memory)(void* device, std::size_t* free, std::size_t* all);
   const char* (*allocate)(void* device, std::size_t bytes, void** memory);
   void (*release)(void* device, void* memory);
   const char* (*upload)(void* device, void* to, const void* from, std::size_t bytes);
   const char* (*download)(void* device, void* to, const void* from, std::size_t bytes);
+  const char* (*copy)(void* device, void* to, const void* from, std::size_t bytes);
+  /// As Device::make_wait.
+  const char* (*make_wait)(void* device, unsigned long long stream);
   const char* (*launch)(void* device, int kernel, const void* arguments, int blocks);
 };
 
