@@ -70,8 +70,8 @@ TEST(Gpu, FollowsTheReferenceForEveryMaterial) {
   }
 }
 
-/// The mixed world; or its liquid over a ball that moves, along a wall with a boundary layer, its
-/// viscosity in stages: "staged" with the rest, or "alone".
+/// The mixed world; or its liquid over a ball that moves, along a wall with a boundary layer, under
+/// force fields, its viscosity in stages: "staged" with the rest, or "alone".
 World<float> world_of(std::string_view name, std::vector<std::vector<ParticleSeed>>& seeds) {
   if (name != "alone" && name != "staged") return mixed_world<float>(name, seeds);
   World<float> w = mixed_world<float>("newtonian", seeds);
@@ -81,6 +81,8 @@ World<float> world_of(std::string_view name, std::vector<std::vector<ParticleSee
   w.walls[2] = {.type = WallType::separate, .skin_friction = true};
   w.colliders[0].twist.velocity = {-0.3, 0.1, 0};
   w.colliders[0].type = WallType::stick;
+  w.fields.push_back({"pull", Attractor{.point = {0.1, 0.1, 0.1}, .strength = 0.05, .radius = 0.05}, {}});
+  w.fields.push_back({"hand", Brush{.point = {0.12, 0.1, 0.1}, .radius = 0.06, .velocity = {0, 1, 0}}, {}});
   return w;
 }
 
@@ -234,6 +236,36 @@ TEST(Gpu, OnlySumsTravelInAStep) {
   }
 }
 
+// Nor does anything go there for colliders at rest; for one that moves, its points and what lies
+// around it.
+TEST(Gpu, OnlyWhatCollidersChangeTravels) {
+  std::vector<std::vector<ParticleSeed>> seeds;
+  World<float> w = mixed_world<float>("newtonian", seeds);
+  const auto run = [&](const char* name, std::size_t most) {
+    World<float> copy = w;
+    auto counting = std::make_unique<Counting>(gpu::make_host_device());
+    Counting& device = *counting;
+    const auto gpu = make_gpu_backend("gpu", std::move(counting));
+    begin(copy, *gpu, seeds);
+    advance(copy, *gpu, 3);
+    std::size_t up = 0;
+    for (int k = 0; k < 80; ++k) {
+      const double drift = copy.drift;
+      device.clear();
+      advance(copy, *gpu, 1);
+      if (copy.drift < drift) continue;
+      up = std::max(up, device.uploaded);
+      EXPECT_LE(device.downloads, 3) << name;  // a pass may be done again
+    }
+    std::printf("%s: %zu bytes go up in a step, of %zu of nodes\n", name, up,
+                copy.grid.nodes.size() * sizeof(Node<float>));
+    EXPECT_LE(up, most) << name;
+  };
+  run("at rest", 0);
+  w.colliders[0].twist.velocity = {-0.3, 0.1, 0};
+  run("moving", 160 << 10);
+}
+
 // Velocities of particles stay there until somebody reads them.
 TEST(Gpu, MotionTravelsWhereItIsRead) {
   std::vector<std::vector<ParticleSeed>> seeds;
@@ -300,12 +332,15 @@ TEST(Gpu, TakesNoMoreMemoryThanItSaysItNeeds) {
     const Counting& device = *counting;
     const auto gpu = make_gpu_backend("gpu", std::move(counting));
     begin(w, *gpu, seeds);
+    // As it was asked for matter as it came, or since: blocks come and go.
+    std::size_t needed = gpu::bytes_needed(w);
     Motion<float> motion;
     advance(w, *gpu, 60, &motion);
-    std::printf("%s: %.2f MB needed, %.2f MB taken\n", name, static_cast<double>(gpu::bytes_needed(w)) / 1e6,
+    needed = std::max(needed, gpu::bytes_needed(w));
+    std::printf("%s: %.2f MB needed, %.2f MB taken\n", name, static_cast<double>(needed) / 1e6,
                 static_cast<double>(device.taken) / 1e6);
-    EXPECT_LE(device.taken, gpu::bytes_needed(w)) << name;
-    EXPECT_GE(device.taken, gpu::bytes_needed(w) / 3) << name;
+    EXPECT_LE(device.taken, needed) << name;
+    EXPECT_GE(device.taken, needed / 3) << name;
   }
 }
 

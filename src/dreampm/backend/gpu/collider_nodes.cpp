@@ -1,14 +1,14 @@
 #include "dreampm/backend/gpu/collider_nodes.h"
 
 #include <algorithm>
-#include <iterator>
+#include <utility>
 
 #include "dreampm/base/parallel.h"
 
 namespace dreampm::gpu {
 
 void ColliderNodes::prepare(const World<float>& world, Memory& memory, const Obstacles& obstacles) {
-  near_.clear();
+  numbers_.assign(world.grid.blocks.size(), 0);
   const std::size_t nodes = obstacles.any() ? world.grid.nodes.size() : 0;
   memory.clearance.resize(nodes);
   memory.base.resize(world.needs_mixture() ? nodes : 0);
@@ -20,11 +20,9 @@ void ColliderNodes::prepare(const World<float>& world, Memory& memory, const Obs
 }
 
 void ColliderNodes::colliders_moved(const World<float>& world, Memory& memory, const Obstacles& obstacles) {
-  std::vector<std::uint32_t> now, some;
-  for (std::size_t b = 0; obstacles.any() && b < world.grid.blocks.size(); ++b)
-    if (obstacles.near(b)) now.push_back(static_cast<std::uint32_t>(b));
-  std::set_union(near_.begin(), near_.end(), now.begin(), now.end(), std::back_inserter(some));
-  near_.swap(now);
+  std::vector<std::uint32_t> some;
+  for (std::size_t b = 0; obstacles.any() && b < numbers_.size(); ++b)
+    if (std::exchange(numbers_[b], obstacles.number(b)) != numbers_[b]) some.push_back(static_cast<std::uint32_t>(b));
   if (some.empty()) return;
   blocks_.upload(some);
   send(some, memory.clearance, [&](std::size_t b, Node<float>* nodes) {

@@ -24,7 +24,7 @@ class ColliderNodes {
   void send(const std::vector<std::uint32_t>& some, Buffer<Node<float>>& to, const Nodes& nodes);
 
   Device* device_;
-  std::vector<std::uint32_t> near_;  ///< blocks of the grid, rising
+  std::vector<std::uint64_t> numbers_;  ///< Obstacles::number of what was sent, by block of the grid
   Buffer<std::uint32_t> blocks_;
   Buffer<Node<float>> copies_;
   std::vector<Node<float>> copies_home_;

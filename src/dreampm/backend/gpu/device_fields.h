@@ -13,15 +13,18 @@ class DeviceFields {
       : device_(&device),
         fields_(device),
         impulses_{Buffer<Vec3<float>>(device), Buffer<Vec3<float>>(device)},
-        given_(device) {}
-  /// Changes the velocities of nodes, if there are fields: all blocks wait then.
-  void apply(const VisitInput& in, const World<float>& world, double dt);
+        given_(device),
+        parts_(device) {}
+  /// Sends what the fields do in a step of `dt` [s]. True if there are any: all blocks wait then.
+  bool begin(const World<float>& world, double dt);
+  /// Changes the velocities of nodes.
+  void apply(const VisitInput& in);
   /// Finds their work, as the nodes move now.
   void find_work(const VisitInput& in);
   /// What they gave, by block of the grid; null without fields.
   const SourceTerms* given() const { return fields_.size() > 0 ? given_.data() : nullptr; }
-  /// The sum of their work [J], as the nodes move now.
-  double work(const VisitInput& in);
+  /// The sum of their work [J], as the nodes move now; `ranges`: of the blocks of the grid.
+  double work(const VisitInput& in, const Buffer<Range>& ranges);
 
  private:
   FieldInput input() const;
@@ -29,7 +32,7 @@ class DeviceFields {
   Device* device_;
   Buffer<FieldStep> fields_;
   std::array<Buffer<Vec3<float>>, 2> impulses_;  ///< kg m/s, by field of the grid and node
-  Buffer<SourceTerms> given_;
+  Buffer<SourceTerms> given_, parts_;
 };
 
 }  // namespace dreampm::gpu

@@ -65,7 +65,7 @@ class FieldStep {
 struct FieldInput {
   const FieldStep* fields;
   std::int32_t count;
-  Vec3<float>* impulses[2];  ///< kg m/s, by field of the grid and node
+  Vec3<float>* impulses[2];  ///< kg m/s, by field of the grid and node; of blocks where any acts
   SourceTerms* given;        ///< by block of the grid
 
   /// True if any acts at a node of that block.
@@ -92,7 +92,6 @@ struct ApplyFields {
     const int b = block.index();
     if (!by.any_in(in, b)) {
       block.each_thread([&](int t) {
-        for (int f = 0; f < 2 && in.grid.field[f]; ++f) by.impulses[f][std::int64_t{b} * block_nodes + t] = {0, 0, 0};
         if (t == 0) by.given[b] = SourceTerms::none();
       });
       return;
@@ -139,6 +138,7 @@ struct FieldWork {
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = block.index();
+    if (!by.any_in(in, b)) return;  // none is known
     block.each_thread([&](int t) {
       shared.given[t] = ImpulseTerms<float>::none();
       const std::int64_t at = std::int64_t{b} * block_nodes + t;

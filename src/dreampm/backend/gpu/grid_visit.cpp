@@ -61,16 +61,18 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
                         const std::vector<StencilBlocks>& reached) {
   find_shared(world, reached);
   find_entries(world, obstacles, host);
-  colliders_moved(world, obstacles, host);
+  find_deep(world, obstacles);
+  gaps_.prepare(world, obstacles, host);
+  surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
+  if (!SurfaceSolver::takes(world)) at_surfaces_.choose(host.surface_blocks());
 }
 
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
-  gaps_.prepare(world, obstacles, host);
   find_deep(world, obstacles);
-  if (SurfaceSolver::takes(world))
-    surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
-  else
-    at_surfaces_.choose(host.surface_blocks());
+  if (!obstacles.changed()) return surfaces_.set_velocities(obstacles, host.surfaces());
+  gaps_.prepare(world, obstacles, host);
+  surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
+  if (!SurfaceSolver::takes(world)) at_surfaces_.choose(host.surface_blocks());
 }
 
 /// Finds the blocks that matter of both fields reaches, and what lies around them.
@@ -136,8 +138,8 @@ void GridVisit::find_deep(const World<float>& world, const Obstacles& obstacles)
 void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host) {
   const MirrorWalls<float>& images = host.images();
   // Where colliders move they may come anywhere until the next sort.
-  const bool all_wait = std::any_of(world.colliders.begin(), world.colliders.end(),
-                                    [](const Collider& c) { return c.path || c.changing || !c.stands(); });
+  all_wait_ = std::any_of(world.colliders.begin(), world.colliders.end(),
+                          [](const Collider& c) { return c.path || c.changing || !c.stands(); });
   const BlockList& list = world.grid.blocks;
   std::vector<VisitBlock> blocks(list.size());
   std::vector<std::uint32_t> waiting;
@@ -145,29 +147,13 @@ void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacl
   for (std::size_t b = 0; b < blocks.size(); ++b) {
     const Vec3i first = list[b] * block_width;
     const std::uint32_t walls = walls_reached(world, first);
-    const bool waits = all_wait || is_shared_[b] || images.changes(b) || (obstacles.any() && obstacles.near(b));
+    const bool waits =
+        is_shared_[b] || images.changes(b) || host.surfaces().changes(b) || (obstacles.any() && obstacles.near(b));
     blocks[b] = {first, walls, waits, walls ? static_cast<std::int32_t>(entries.size()) : -1};
-    if (blocks[b].waits) waiting.push_back(static_cast<std::uint32_t>(b));
+    if (waits) waiting.push_back(static_cast<std::uint32_t>(b));
     if (walls) entries.resize(entries.size() + 6, -1);
   }
-  const auto node = [&](std::size_t at) {
-    return list[at / block_nodes] * block_width + node_offset(static_cast<int>(at % block_nodes));
-  };
-  std::vector<ImageLayer> layers;
-  for (int axis = 0; axis < 3; ++axis) {
-    axes_[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(layers.size());
-    for (const auto& l : images.layers(axis))
-      layers.push_back({static_cast<std::uint32_t>(l.ghosts),
-                        static_cast<std::uint32_t>(l.walls),
-                        static_cast<std::uint32_t>(l.inners),
-                        l.side,
-                        -1,
-                        {l.folds[0], l.folds[1]},
-                        node(l.ghosts),
-                        node(l.inners)});
-  }
-  axes_[3] = static_cast<std::uint32_t>(layers.size());
-  folds_ = images.folds();
+  std::vector<ImageLayer> layers = find_layers(list, images);
 
   std::vector<Range> ranges;
   side_of_range_.clear();
@@ -193,15 +179,37 @@ void GridVisit::find_entries(const World<float>& world, const Obstacles& obstacl
   dragged_.upload(std::vector<SourceTerms>(world.has_skin_friction() ? count : 0, SourceTerms::none()));
 }
 
+std::vector<ImageLayer> GridVisit::find_layers(const BlockList& list, const MirrorWalls<float>& images) {
+  const auto node = [&](std::size_t at) {
+    return list[at / block_nodes] * block_width + node_offset(static_cast<int>(at % block_nodes));
+  };
+  std::vector<ImageLayer> layers;
+  for (int axis = 0; axis < 3; ++axis) {
+    axes_[static_cast<std::size_t>(axis)] = static_cast<std::uint32_t>(layers.size());
+    for (const auto& l : images.layers(axis))
+      layers.push_back({static_cast<std::uint32_t>(l.ghosts),
+                        static_cast<std::uint32_t>(l.walls),
+                        static_cast<std::uint32_t>(l.inners),
+                        l.side,
+                        -1,
+                        {l.folds[0], l.folds[1]},
+                        node(l.ghosts),
+                        node(l.inners)});
+  }
+  axes_[3] = static_cast<std::uint32_t>(layers.size());
+  folds_ = images.folds();
+  return layers;
+}
+
 GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obstacles& obstacles,
                                 GridUpdate<float>& host, double dt, bool thin) {
   GridStats total;
   total.colliders.resize(world.colliders.size());
   gaps_.measure(world, memory, host.gaps(), thin);
   VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
-  in.all_wait = !world.fields.empty();
+  in.all_wait = fields_.begin(world, dt) || in.all_wait;
   launch(*device_, BeginVisit{in}, blocks_.size());
-  fields_.apply(in, world, dt);
+  fields_.apply(in);
   contact(in, nullptr, world, memory, obstacles, host, dt, total);
   fields_.find_work(in);
   add_results(in, nullptr, total);
@@ -210,7 +218,7 @@ GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obsta
 
 void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<float>& world, Memory& memory,
                         const Obstacles& obstacles, GridUpdate<float>& host, double dt, GridStats& found) {
-  lay_parts(world, in, stage);
+  lay_parts(in, stage);
   if (SurfaceSolver::takes(world))
     surfaces_(in, world, gaps_, dt);
   else
@@ -245,9 +253,14 @@ VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt
   VisitInput in{};
   in.step = node_constants(world, dt, part);
   in.grid = memory.grid_pointers();
-  double lightest = 1e30;
-  for (const ParticleSet<float>& set : world.sets) lightest = std::min(lightest, set.mass);
-  in.light = static_cast<float>(std::max(light_part * lightest, light_counts * world.scatter_bounds[1]));
+  for (std::size_t f = 0; f < 2; ++f) {
+    double lightest = 1e30, heaviest = 0;  // particle
+    for (const ParticleSet<float>& set : world.sets)
+      if (world.field_of(set) == f) lightest = std::min(lightest, set.mass), heaviest = std::max(heaviest, set.mass);
+    // A node of the field is no heavier than a few hundred of its particles.
+    const double counted = std::min(world.scatter_bounds[1], 256 * heaviest);
+    in.light[f] = static_cast<float>(std::max(light_part * lightest, light_counts * counted));
+  }
   for (std::size_t f = 0; f < 2; ++f) {
     const double share = in.grid.velocity_old[f] ? world.kept_share(f) : 0;
     in.unweigh[f] = static_cast<float>(1 / share);
@@ -256,6 +269,7 @@ VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt
   in.places = {world.origin, world.dx, world.low};
   in.blocks = blocks_.data(), in.entries = entries_.data();
   in.sums = sums_.data(), in.given = given_.data();
+  in.all_wait = all_wait_;
   if (in.step.keep != 1) damped_.resize(blocks_.size()), in.damped = damped_.data();
   return in;
 }
@@ -265,15 +279,15 @@ LayersInput GridVisit::layers(int axis) const {
   return {layers_.data() + begin, static_cast<std::int32_t>(end - begin)};
 }
 
-void GridVisit::lay_parts(const World<float>& world, const VisitInput& in, const StageInput* stage) {
+void GridVisit::lay_parts(const VisitInput& in, const StageInput* stage) {
   const std::size_t blocks = block_ranges_.size(), walls = wall_ranges_.size();
   const std::array<std::size_t, parts> sizes{blocks,
                                              walls,
                                              stage && stage->dragged ? walls : 0,
                                              in.damped ? blocks : 0,
-                                             in.all_wait ? blocks : 0,
+                                             fields_.given() ? blocks : 0,
                                              stage ? blocks : 0,
-                                             SurfaceSolver::takes(world) ? surfaces_.ranges().size() : 0,
+                                             surfaces_.ranges().size(),
                                              collider_of_group_.size()};
   for (std::size_t p = 0; p < parts; ++p) parts_at_[p + 1] = parts_at_[p] + sizes[p];
   static_assert(sizeof(GridTerms) == sizeof(SourceTerms));

@@ -45,7 +45,7 @@ class GridVisit {
   /// Adds the sums. Returns the work of gravity and stress in a stage [J].
   double add_results(const VisitInput& in, const StageInput* stage, GridStats& total);
   /// The work of force fields [J], as the nodes move now.
-  double field_work(const VisitInput& in) { return fields_.work(in); }
+  double field_work(const VisitInput& in) { return fields_.work(in, block_ranges_); }
   /// As VisitInput::given, of boundary layers in a stage.
   SourceTerms* dragged() { return dragged_.data(); }
   /// The blocks of the grid that matter of both fields reaches.
@@ -55,6 +55,7 @@ class GridVisit {
  private:
   void find_shared(const World<float>& world, const std::vector<StencilBlocks>& reached);
   void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
+  std::vector<ImageLayer> find_layers(const BlockList& list, const MirrorWalls<float>& images);
   void find_deep(const World<float>& world, const Obstacles& obstacles);
   /// `bodies`: as GridUpdate::meet_surfaces.
   void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
@@ -72,7 +73,7 @@ class GridVisit {
     of_deep,
     parts
   };
-  void lay_parts(const World<float>& world, const VisitInput& in, const StageInput* stage);
+  void lay_parts(const VisitInput& in, const StageInput* stage);
   std::size_t size_of(Part part) const { return parts_at_[part + 1] - parts_at_[part]; }
   template <class T>
   T* there(Part part) {
@@ -82,7 +83,7 @@ class GridVisit {
   T at_home(std::size_t number) const;
 
   Device* device_;
-  bool folds_ = false;
+  bool folds_ = false, all_wait_ = false;
   // Blocks that matter of both fields reaches.
   std::vector<std::uint8_t> is_shared_;  ///< by block of the grid
   Buffer<std::uint32_t> shared_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "dreampm/backend/gpu/block_copies.h"
 #include "dreampm/backend/gpu/contact_gaps.h"
 #include "dreampm/backend/gpu/deep_contact.h"
 #include "dreampm/backend/gpu/field_visit.h"

@@ -62,9 +62,9 @@ struct VisitBlock {
 struct VisitInput {
   NodeConstants<float> step;
   float unweigh[2];  ///< by field, as normalize_old_velocity
-  /// kg: lighter nodes do not count for the largest speed. No particle sees them with a weight
-  /// above a millionth, and their velocity is rounded.
-  float light;
+  /// kg, by field: lighter nodes do not count for the largest speed. No particle sees them with a
+  /// weight above a millionth, and their velocity is rounded.
+  float light[2];
   GridPointers grid;
   NodePlaces places;
   GapPointers gaps[2];  ///< by field
@@ -73,7 +73,7 @@ struct VisitInput {
   GridTerms* sums;              ///< by block of the grid
   SourceTerms* given;           ///< impulses of walls
   SourceTerms* damped;          ///< impulses of damping, by block; null without damping
-  bool all_wait;                ///< whether all blocks wait, as VisitBlock::waits: force fields come between
+  bool all_wait;                ///< whether all blocks wait, as VisitBlock::waits
 
   DM_FN float speed2_of(const Node<float>& node) const { return dot(velocity(node), velocity(node)); }
 };
@@ -143,7 +143,7 @@ struct BlockBoundaries {
       const float speed2 = in.speed2_of(nodes[t]);
       NodeTerms<float> own = NodeTerms<float>::none();
       own.kinetic2 = nodes[t].m * speed2;
-      own.fastest2 = nodes[t].m < in.light ? 0 : speed2;
+      own.fastest2 = nodes[t].m < in.light[f] ? 0 : speed2;
       if (f == 0) shared.terms[t] = own;
       if (f == 1) shared.terms[t].add(own);
     });

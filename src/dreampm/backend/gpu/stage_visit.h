@@ -52,7 +52,7 @@ struct BeginStage {
         if (Node<float>& node = in.grid.field[f][first + t]; has_mass(node))
           set_velocity(node, velocity(node) + velocity(stage.field[f].change[first + t]));
     });
-    if (!in.blocks[b].waits) BlockBoundaries::finish(in, block, shared, b);
+    if (!in.blocks[b].waits && !in.all_wait) BlockBoundaries::finish(in, block, shared, b);
   }
 
  private:

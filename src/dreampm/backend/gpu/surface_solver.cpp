@@ -26,27 +26,50 @@ SurfaceSolver::SurfaceSolver(Device& device)
 
 void SurfaceSolver::prepare(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host,
                             const ContactGaps& gaps) {
-  moves_ = host.moves();
-  find_points(obstacles, host, gaps);
-  find_nodes(obstacles, host);
-  find_groups(world.colliders.size(), host);
+  const SurfaceContact<float> nothing;
+  const SurfaceContact<float>& from = takes(world) ? host : nothing;
+  find_points(obstacles, from, gaps);
+  find_nodes(from);
+  find_groups(world.colliders.size(), from);
   std::vector<CollidingMatter> colliders;
   for (const Collider& c : world.colliders)
     colliders.push_back({c.contact(), !c.holds, static_cast<float>(c.friction), c.sticky});
   colliders_.upload(colliders);
   fastest2_.resize(1);
+  set_velocities(obstacles, from);
+}
+
+void SurfaceSolver::set_velocities(const Obstacles& obstacles, const SurfaceContact<float>& host) {
+  if (node_blocks_.size() == 0) return;
+  moves_ = host.moves();
+  for (const auto& point_block : host.point_blocks()) {
+    const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
+    for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
+      points_home_[p].velocity = surface[p - point_block.begin].velocity;
+      points_home_[p].spin = surface[p - point_block.begin].spin;
+    }
+  }
+  std::size_t first = 0;
+  for (const auto& node_block : host.node_blocks()) {
+    const std::vector<ObstacleNode>& near = obstacles.at(node_block.block);
+    for (std::size_t n = 0; n < block_nodes; ++n)
+      if (nodes_home_[first + n].sticks)
+        nodes_home_[first + n].velocity = static_cast<Vec3<float>>(near[node_block.held_by[n]].velocity);
+    first += block_nodes;
+  }
+  points_.upload(points_home_), nodes_.upload(nodes_home_);
 }
 
 void SurfaceSolver::find_points(const Obstacles& obstacles, const SurfaceContact<float>& host,
                                 const ContactGaps& gaps) {
-  std::vector<ContactPoint> points(host.points().size());
+  points_home_.resize(host.points().size());
   std::vector<PointBlock> blocks;
   for (const auto& point_block : host.point_blocks()) {
     const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
     for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
       const SurfacePoint& from = surface[p - point_block.begin];
       const auto& known = host.points()[p];
-      ContactPoint& to = points[p];
+      ContactPoint& to = points_home_[p];
       to = {from.at,
             from.normal,
             from.from_edge,
@@ -69,25 +92,23 @@ void SurfaceSolver::find_points(const Obstacles& obstacles, const SurfaceContact
           around == BlockList::none || gaps.gaps_of().empty() ? -1 : gaps.gaps_of()[static_cast<std::size_t>(around)];
     }
   }
-  points_.upload(points), blocks_.upload(blocks);
-  point_states_.resize(points.size()), changes_.resize(points.size()), velocity_weights_.resize(27 * points.size());
+  blocks_.upload(blocks);
+  const std::size_t count = points_home_.size();
+  point_states_.resize(count), changes_.resize(count), velocity_weights_.resize(27 * count);
 }
 
-void SurfaceSolver::find_nodes(const Obstacles& obstacles, const SurfaceContact<float>& host) {
+void SurfaceSolver::find_nodes(const SurfaceContact<float>& host) {
   const auto& of = host.node_blocks();
   const std::size_t count = of.size() * block_nodes;
   std::vector<std::uint32_t> blocks;
-  std::vector<ContactNode> nodes(count);
+  nodes_home_.resize(count);
   for (const auto& node_block : of) {
     const std::size_t first = blocks.size() * block_nodes;
     blocks.push_back(static_cast<std::uint32_t>(node_block.block));
-    const std::vector<ObstacleNode>& near = obstacles.at(node_block.block);
     for (std::size_t n = 0; n < block_nodes; ++n) {
       const bool sticks = (node_block.sticking >> n & 1) != 0;
-      const Vec3<float> none{},
-          axis = sticks ? node_block.axis[n] : none,
-          velocity = sticks ? static_cast<Vec3<float>>(near[node_block.held_by[n]].velocity) : none;
-      nodes[first + n] = {node_block.open_fraction[n], sticks, node_block.collider[n], axis, velocity};
+      const Vec3<float> none{}, axis = sticks ? node_block.axis[n] : none;
+      nodes_home_[first + n] = {node_block.open_fraction[n], sticks, node_block.collider[n], axis, none};
     }
   }
   // The points at each node, in the order of the points.
@@ -107,7 +128,7 @@ void SurfaceSolver::find_nodes(const Obstacles& obstacles, const SurfaceContact<
   each([&](std::size_t p, std::size_t l, std::size_t node) {
     points_of[next[node]++] = {static_cast<std::uint32_t>(p), host.in_stencil()[l]};
   });
-  node_blocks_.upload(blocks), nodes_.upload(nodes), first_.upload(first), points_of_.upload(points_of);
+  node_blocks_.upload(blocks), first_.upload(first), points_of_.upload(points_of);
   inverse_masses_.resize(points_of.size()), node_states_.resize(count);
 }
 

@@ -20,9 +20,11 @@ class SurfaceSolver {
   /// velocities are unknowns too.
   static bool takes(const World<float>& world) { return world.rigid.empty(); }
   /// Must be called after the same of `host`: after every change of the grid's block list or of
-  /// colliders.
+  /// colliders. Where it does not take the world it has no points.
   void prepare(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host,
                const ContactGaps& gaps);
+  /// Must be called instead where the velocities of colliders alone have changed.
+  void set_velocities(const Obstacles& obstacles, const SurfaceContact<float>& host);
   /// Contact of all fields in a step of `dt` [s].
   void operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt);
   /// What colliders gave, and the ranges of it that belong together.
@@ -33,13 +35,15 @@ class SurfaceSolver {
 
  private:
   void find_points(const Obstacles& obstacles, const SurfaceContact<float>& host, const ContactGaps& gaps);
-  void find_nodes(const Obstacles& obstacles, const SurfaceContact<float>& host);
+  void find_nodes(const SurfaceContact<float>& host);
   void find_groups(std::size_t colliders, const SurfaceContact<float>& host);
   SurfaceInput input(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt,
                      std::size_t field) const;
 
   Device* device_;
   bool moves_ = false;
+  std::vector<ContactPoint> points_home_;
+  std::vector<ContactNode> nodes_home_;
   Buffer<ContactPoint> points_;
   Buffer<PointBlock> blocks_;
   Buffer<std::uint32_t> node_blocks_, first_, first_group_;

@@ -31,8 +31,7 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
       stage.field[f] = {memory.momenta[f].data(), memory.nodes[of_field(stress_nodes, f)].data(), old_[f].data(),
                         change_[f].data()};
     launch(*device_, BeginStage{in, stage}, blocks);
-    if (const SharedNodes shared = visit.shared_nodes(in); in.grid.field[1])
-      launch(*device_, DragSolids{shared, stage}, visit.shared_count());
+    launch(*device_, DragSolids{visit.shared_nodes(in), stage}, visit.shared_count());
     GridStats stats;
     stats.colliders.resize(world.colliders.size());
     visit.contact(in, &stage, world, memory, obstacles, host, dt, stats);
