@@ -100,6 +100,23 @@ colliders: {ball: {shape: {sphere: {radius: 0.05}, center: [0.12, 0.02, 0.08]}, 
 fields: {pull: {type: attractor, point: [0.2, 0.1, 0.08], strength: 0.2, radius: 0.05}}
 )",
      6, 0.03, ", walls: {all: {type: separate, skin_friction: true}}", ", damping: 1", true},
+    {"water over edges, sand on what holds it by tension, all around a periodic box", R"(
+materials: {water: {type: newtonian}, sand: {type: sand, youngs_modulus: 1.0e5}}
+bodies:
+  dam: {material: water, shape: {box: {min: [0, 0, 0], max: [0.08, 0.14, 0.15]}}, velocity: [1, 0, 0.5]}
+  heap: {material: sand, shape: {box: {min: [0.15, 0.11, 0.04], max: [0.22, 0.16, 0.12]}}, velocity: [-0.5, 0, 0]}
+colliders:
+  step: {shape: {box: {size: [0.05, 0.07, 0.6]}, center: [0.14, 0.035, 0.08]}, type: separate, friction: 0.3}
+  shelf: {shape: {box: {size: [0.1, 0.06, 0.6]}, center: [0.2, 0.08, 0.08]}, type: separate, sticky: 2000}
+)",
+     6, 0.03, ", periodic: [z]"},
+    {"jelly that a collider holds and another one strikes", R"(
+materials: {jelly: {type: elastic, youngs_modulus: 2.0e4, poissons_ratio: 0.3}}
+bodies: {bar: {material: jelly, shape: {box: {min: [0.02, 0.08, 0.04], max: [0.2, 0.13, 0.12]}}}}
+colliders:
+  clamp: {shape: {box: {size: [0.06, 0.1, 0.16]}, center: [0.04, 0.1, 0.08]}, holds: true, motion: {velocity: [0, 0.2, 0]}}
+  fist: {shape: {sphere: {radius: 0.04}, center: [0.16, 0.2, 0.08]}, type: separate, friction: 0.2, motion: {velocity: [0, -1, 0]}}
+)"},
     {"force fields of all kinds over water and jelly", R"(
 materials:
   water: {type: newtonian}

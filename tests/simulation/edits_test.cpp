@@ -202,6 +202,24 @@ TEST(Edits, GoBesideCollidersAndProbes) {
   s.advance_to(0.02);
 }
 
+TEST(Edits, TheLastColliderGoesAndComes) {
+  const Scene scene = dam_and_jelly().with(
+      {"colliders.post={shape: {cylinder: {radius: 0.02, height: 0.1}, center: [0.22, 0.05, 0.03]}}"});
+  Simulation s(scene, quiet());
+  s.advance_to(0.01);
+  const auto with_post = s.snapshot();
+  s.remove_collider("post");
+  s.advance_to(0.02);
+  const auto without = s.snapshot();
+  const double bare = s.totals().kinetic;
+  s.restore(with_post);
+  s.advance_to(0.02);
+  EXPECT_NE(s.totals().kinetic, bare);
+  s.restore(without);
+  EXPECT_EQ(s.totals().kinetic, bare);
+  s.advance_to(0.03);
+}
+
 TEST(Edits, OfGravityLeaveTheGridOfExplicitStepsAsItIs) {
   for (const char* backend : {"cpu", "reference"}) {
     Simulation s = pressed_cube(backend, "apic"), other = pressed_cube(backend, "apic");

@@ -41,7 +41,10 @@ template <class R>
 void SurfaceContact<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   keep_points(world.grid.blocks);
   node_block_index_.clear(), body_points_.clear();
-  if (world.colliders.empty() || !world.settings.surface_contact) return node_blocks_.clear();
+  if (world.colliders.empty() || !world.settings.surface_contact) {
+    node_blocks_.clear(), points_.clear(), point_nodes_.clear(), in_stencil_.clear();
+    return;
+  }
   is_free_ball_ = free_balls(world);
   any_moves_ = moves_any(world);
   find_points(world, obstacles);

@@ -21,8 +21,10 @@ void ColliderNodes::prepare(const World<float>& world, Memory& memory, const Obs
 
 void ColliderNodes::colliders_moved(const World<float>& world, Memory& memory, const Obstacles& obstacles) {
   std::vector<std::uint32_t> some;
-  for (std::size_t b = 0; obstacles.any() && b < numbers_.size(); ++b)
-    if (std::exchange(numbers_[b], obstacles.number(b)) != numbers_[b]) some.push_back(static_cast<std::uint32_t>(b));
+  for (std::size_t b = 0; obstacles.any() && b < numbers_.size(); ++b) {
+    const std::uint64_t now = obstacles.number(b);
+    if (std::exchange(numbers_[b], now) != now) some.push_back(static_cast<std::uint32_t>(b));
+  }
   if (some.empty()) return;
   blocks_.upload(some);
   send(some, memory.clearance, [&](std::size_t b, Node<float>* nodes) {

@@ -28,8 +28,8 @@ class GapMeasure {
   void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
   /// True if any matter has gaps.
   bool any() const { return gapped_[0] || gapped_[1]; }
-  /// Finds all gaps at the particles' places, and brings those to `gaps` that contact with surfaces
-  /// asks for. `thin`: whether SetMemory::distance is to be read.
+  /// Finds all gaps at the particles' places, and brings those to `gaps` that the host's contact
+  /// with surfaces asks for, where it does that. `thin`: whether SetMemory::distance is to be read.
   void measure(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin);
   /// The gaps before walls of a field of the grid.
   GapPointers pointers(std::size_t field) const {
@@ -46,7 +46,7 @@ class GapMeasure {
   Buffer<WallPlane> planes_;
   Buffer<std::int32_t> gaps_of_, walls_of_, gaps_;
   Buffer<float> gap_;
-  // Those that contact with surfaces asks for.
+  // Those that the host asks for.
   std::vector<std::int32_t> asked_home_;
   Buffer<std::int32_t> asked_, asked_gaps_;
   std::vector<float> asked_gaps_home_;

@@ -1,5 +1,6 @@
 #include "dreampm/backend/gpu/gpu.h"
 
+#include <algorithm>
 #include <exception>
 #include <optional>
 #include <string>
@@ -60,7 +61,7 @@ class Gpu final : public Backend<float> {
 
   void sort(World<float>& world) override {
     const Change change(*this);
-    if (gpu::ParticleSort::takes(world)) {
+    if (orders_there(world)) {
       nodes_to_device(world);
       sort_(world, memory_);
       home_ = MatterFields::none;
@@ -85,7 +86,7 @@ class Gpu final : public Backend<float> {
 
   PassStats insert_particles(World<float>& world, std::size_t set, std::span<const ParticleSeed> seeds) override {
     check_whole();
-    if (gpu::ParticleInserts::takes(world)) {
+    if (orders_there(world)) {
       nodes_to_device(world);
       inserts_.begin(world, memory_, set, seeds);  // where it throws nothing has changed
       const Change change(*this);
@@ -204,6 +205,10 @@ class Gpu final : public Backend<float> {
     if (!whole_) fail_run("{}: an earlier failure left the matter there half changed", device_->about());
   }
 
+  /// True if the device sorts and inserts: the host does where particles carry their motion.
+  static bool orders_there(const World<float>& world) {
+    return std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
+  }
   /// Copies what `fields` name to the World, where its arrays are not current.
   void bring_home(World<float>& world, MatterFields fields) {
     const auto wants = [&](MatterFields part) { return includes(fields, part) && !includes(home_, part); };

@@ -285,7 +285,7 @@ void GridVisit::lay_parts(const VisitInput& in, const StageInput* stage) {
                                              walls,
                                              stage && stage->dragged ? walls : 0,
                                              in.damped ? blocks : 0,
-                                             fields_.given() ? blocks : 0,
+                                             !stage && fields_.given() ? blocks : 0,
                                              stage ? blocks : 0,
                                              surfaces_.ranges().size(),
                                              collider_of_group_.size()};

@@ -27,10 +27,6 @@ void resize_columns(ParticleSet<float>& set, std::size_t size, std::size_t room)
 ParticleInserts::ParticleInserts(Device& device, GridLayout& layout, SomeNodes& nodes)
     : device_(&device), layout_(layout), nodes_(nodes), placed_(device), cells_(device), filled_(device) {}
 
-bool ParticleInserts::takes(const World<float>& world) {
-  return std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
-}
-
 void ParticleInserts::begin(World<float>& world, Memory& memory, std::size_t set, std::span<const ParticleSeed> seeds) {
   plan_.emplace(world, set, seeds);
   set_ = set, seeds_ = seeds;
@@ -39,14 +35,15 @@ void ParticleInserts::begin(World<float>& world, Memory& memory, std::size_t set
   std::vector<std::uint64_t> cells;
   if (!(world.drift > 0)) download_cells(world, memory);
   const std::vector<Vec3i> old_blocks = world.particle_blocks;
+  laid_ = false;
   plan_->exchange(world);
-  resize_columns(to, size, plan_->room());
-  if (world.drift > 0)
-    cells.assign(world.particle_blocks.size(), ~std::uint64_t{0});
-  else
-    cells = held_cells(world, halves_, old_blocks);
-  laid_ = layout_.lay(world, cells);
   try {
+    resize_columns(to, size, plan_->room());
+    if (world.drift > 0)
+      cells.assign(world.particle_blocks.size(), ~std::uint64_t{0});
+    else
+      cells = held_cells(world, halves_, old_blocks);
+    laid_ = layout_.lay(world, cells);
     check_room(*device_, world);
   } catch (...) {
     if (laid_) layout_.take_back(world);

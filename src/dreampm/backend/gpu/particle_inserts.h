@@ -16,8 +16,6 @@ class ParticleInserts {
  public:
   /// What it is handed has to outlive it.
   ParticleInserts(Device& device, GridLayout& layout, SomeNodes& nodes);
-  /// True if a device can insert into this world: the host does where particles carry their motion.
-  static bool takes(const World<float>& world);
 
   // The parts of an insertion, in this order. Particles and nodes have to be current in `memory`,
   // and are afterwards.

@@ -37,10 +37,6 @@ ParticleSort::ParticleSort(Device& device, GridLayout& layout, SomePlaces& place
       targets_(device),
       cells_(device) {}
 
-bool ParticleSort::takes(const World<float>& world) {
-  return std::none_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return set.carries_motion; });
-}
-
 void ParticleSort::operator()(World<float>& world, Memory& memory) {
   find_taken(world, memory);
   count_moves(world, memory);

@@ -12,8 +12,6 @@ class ParticleSort {
  public:
   /// What it is handed has to outlive it.
   ParticleSort(Device& device, GridLayout& layout, SomePlaces& places, SomeNodes& nodes);
-  /// True if a device can sort this world: the host does where particles carry their motion.
-  static bool takes(const World<float>& world);
   /// Nodes and particles have to be current in `memory`, and are afterwards. The World gets the
   /// lists of blocks, and its arrays their sizes. What sinks take the host decides: of the blocks
   /// that they reach positions and nodes come home, and are overwritten in the World.

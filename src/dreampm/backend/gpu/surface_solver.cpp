@@ -193,9 +193,7 @@ SurfaceInput SurfaceSolver::input(const VisitInput& in, const World<float>& worl
 void SurfaceSolver::operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt) {
   const std::size_t blocks = node_blocks_.size(), points = std::max<std::size_t>(points_.size(), 1);
   if (blocks == 0) return;
-  const auto by_point = [&]<class K>(const K& kernel) {
-    launch(*device_, kernel, (points + K::threads - 1) / K::threads);
-  };
+  const auto by_point = [&]<class K>(const K& kernel) { launch(*device_, kernel, blocks_for<K>(points)); };
   for (std::size_t field = 0; field < 2; ++field) {
     if (world.grid.field(field).empty()) continue;
     const SurfaceInput all = input(in, world, gaps, dt, field);

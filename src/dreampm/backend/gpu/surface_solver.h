@@ -1,7 +1,6 @@
 // Contact with the surfaces of colliders whose motion is known, at nodes in a device's memory, in
 // place of SurfaceContact.
 #pragma once
-#include <array>
 #include <cstdint>
 #include <vector>
 

@@ -24,7 +24,7 @@ void ThinDistances::prepare(const World<float>& world, Memory& memory, const Obs
     std::vector<Buffer<float>>& columns = memory.sets[s].distance;
     for (Buffer<float>& column : columns) column.resize(set.size());
     launch(*device_, FillColumn{columns[3].data(), static_cast<std::int64_t>(set.size()), no_distance},
-           (set.size() + FillColumn::threads - 1) / FillColumn::threads);
+           blocks_for<FillColumn>(set.size()));
   }
 }
 
