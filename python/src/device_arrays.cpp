@@ -14,6 +14,17 @@
 namespace dreampm::python {
 namespace {
 
+/// An array whose last reader frees it without the GIL: that may wait for work of the device, which
+/// may wait for the GIL.
+std::shared_ptr<const DeviceArray> freed_without_gil(std::shared_ptr<const DeviceArray> array) {
+  const DeviceArray* const it = array.get();
+  return {it, [array = std::move(array)](const DeviceArray*) mutable {
+            if (PyGILState_Check() == 0) return array.reset();
+            const nb::gil_scoped_release free;
+            array.reset();
+          }};
+}
+
 /// An array of DeviceParticles with its shape.
 struct Numbers {
   std::shared_ptr<const DeviceArray> array;
@@ -22,7 +33,7 @@ struct Numbers {
   const char* type_name;  ///< of numpy
 
   Numbers(std::shared_ptr<const DeviceArray> of, std::size_t rows, bool vectors)
-      : array(std::move(of)),
+      : array(freed_without_gil(std::move(of))),
         shape{static_cast<std::int64_t>(rows)},
         type(vectors ? nb::dtype<float>() : nb::dtype<std::uint32_t>()),
         type_name(vectors ? "float32" : "uint32") {
@@ -66,6 +77,11 @@ dlpack::Array shared_array(const Numbers& numbers, const std::shared_ptr<const D
   const auto [kind, number] = place_of(numbers);
   return {array->data(), {kind, number}, numbers.type, numbers.shape, flags, array};
 }
+/// A copy on the device.
+std::shared_ptr<const DeviceArray> device_copy(const Numbers& numbers) {
+  const nb::gil_scoped_release free;
+  return freed_without_gil(numbers.array->copy());
+}
 /// A copy in the memory of the host.
 dlpack::Array host_copy(const Numbers& numbers) {
   const auto bytes = std::make_shared<std::vector<std::byte>>(numbers.array->bytes());
@@ -82,7 +98,7 @@ nb::object to_dlpack(const Numbers& numbers, std::optional<std::int64_t> stream,
   const bool versioned = max_version && max_version->first >= static_cast<int>(dlpack::version_major);
   const DevicePlace from = place_of(numbers), wanted = to.value_or(from);
   if (wanted == from) {
-    const std::shared_ptr<const DeviceArray> array = copy.value_or(false) ? numbers.array->copy() : numbers.array;
+    const std::shared_ptr<const DeviceArray> array = copy.value_or(false) ? device_copy(numbers) : numbers.array;
     make_wait(numbers, stream);
     return dlpack::capsule(shared_array(numbers, array, copy.value_or(false) ? dlpack::is_copied : dlpack::read_only),
                            versioned);

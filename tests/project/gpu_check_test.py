@@ -110,7 +110,7 @@ def main():
 
         race = check(tool, folder, "--only", "sanitizer", PATH=f"{folder}:{os.environ['PATH']}")
         expect("a race", (race.code, race.found["failed"][0]),
-               (1, "racecheck of snow and water about a ball: exit code 9: RACECHECK SUMMARY: 1 hazard"))
+               (1, "racecheck of all kinds of matter and surroundings: exit code 9: RACECHECK SUMMARY: 1 hazard"))
         expect("its runs", [r["code"] for r in race.found["sanitizer"]["runs"]], [9, 9, 0, 0, 0, 0])
 
         babble = check(tool, folder, "--only", "large", "dragon", BABBLES="1")
