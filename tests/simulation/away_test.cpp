@@ -93,7 +93,8 @@ class StoppingHost final : public Host {
 Written run(const std::string& scene_text, const std::string& backend) {
   const auto parsed = scene::parse_scene_text(scene_text, "outflow.yaml", {});
   if (!parsed.ok()) throw std::runtime_error(parsed.text());
-  const fs::path folder = fs::path(DM_BINARY_DIR) / "test-files" / "away";
+  const fs::path folder =
+      fs::path(DM_BINARY_DIR) / "test-files" / "away" / testing::UnitTest::GetInstance()->current_test_info()->name();
   fs::remove_all(folder);
   SimulateOptions options;
   options.folder = folder, options.backend = backend;

@@ -27,17 +27,16 @@ void BodyCoupling::begin(const World<R>& world, double dt) {
 }
 
 void BodyCoupling::add(const Lever& lever, const Response& response) {
-  Body& b = bodies_[lever.body];
-  const Vector6 j = six(lever.linear, lever.angular);
-  Eigen::Map<Vector6>(b.given.data()) += response.impulse * j;
-  Eigen::Map<Matrix6>(b.matter.data()) += response.stiffness * j * j.transpose();
+  bodies_[lever.body].sums.add_point(lever.linear, lever.angular, response.impulse, response.stiffness);
 }
 
 void BodyCoupling::solve() {
   for (Body& b : bodies_) {
     Vector6 r = six((b.free_velocity - b.velocity) * b.mass, b.inertia * (b.free_spin - b.spin)) -
-                Eigen::Map<Vector6>(b.given.data());
-    Matrix6 m = Eigen::Map<Matrix6>(b.matter.data());
+                Eigen::Map<const Vector6>(b.sums.given);
+    Matrix6 m = Matrix6::Zero();  // the solver reads its lower half
+    for (int i = 0, n = 0; i < 6; ++i)
+      for (int k = 0; k <= i; ++k) m(i, k) = b.sums.matter[n++];
     m.diagonal().head<3>().array() += b.mass;
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k) m(i + 3, k + 3) += b.inertia(i, k);
@@ -49,7 +48,7 @@ void BodyCoupling::solve() {
     const Vector6 change = m.ldlt().solve(r);
     b.velocity += Vec3d{change(0), change(1), change(2)};
     b.spin += Vec3d{change(3), change(4), change(5)};
-    b.given = {}, b.matter = {};
+    b.sums = BodySums::none();
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "dreampm/backend/body_sums.h"
 #include "dreampm/state/world.h"
 
 namespace dreampm {
@@ -33,14 +34,18 @@ class BodyCoupling {
   template <class R>
   void begin(const World<R>& world, double dt);
   bool any() const { return !bodies_.empty(); }
-  /// Adds a point; then solve() moves the bodies.
+  /// Adds a point, or points that were summed elsewhere; then solve() moves the bodies.
   void add(const Lever& lever, const Response& response);
+  void add(std::size_t body, const BodySums& sums) { bodies_[body].sums.add(sums); }
   void solve();
   /// The speed of a point along its normal, as its nodes would have it [m/s].
   double speed(const Lever& lever) const {
     const Body& b = bodies_[lever.body];
     return dot(lever.linear, b.velocity) + dot(lever.angular, b.spin);
   }
+  /// Of the center of a body [m/s], and its spin [rad/s].
+  const Vec3d& velocity(std::size_t body) const { return bodies_[body].velocity; }
+  const Vec3d& spin(std::size_t body) const { return bodies_[body].spin; }
 
  private:
   struct Body {
@@ -48,8 +53,7 @@ class BodyCoupling {
     double mass;
     Mat3d inertia;
     std::array<bool, 6> locked;
-    std::array<double, 6> given{};    ///< sum l_s A_s J_s
-    std::array<double, 36> matter{};  ///< S, symmetric
+    BodySums sums = BodySums::none();
   };
   std::vector<Body> bodies_;
 };

@@ -103,18 +103,6 @@ class GridUpdate {
   ContactGaps& gaps();
   const SurfaceContact<R>& surfaces() const;
 
-  // Contact with surfaces alone, for who visits the nodes elsewhere.
-
-  /// The grid blocks that it looks at and may change.
-  const std::vector<std::uint32_t>& surface_blocks() const;
-  /// The grid blocks around its points, at which it asks for the gaps of solids and grains, into
-  /// `blocks`, rising.
-  void find_gap_blocks(std::vector<std::uint32_t>& blocks) const;
-  /// Contact with the surfaces of colliders, in a step of `dt`. The nodes of those blocks hold
-  /// velocities; no others are looked at. Adds the impulses of colliders. `bodies`: whether rigid
-  /// bodies are unknowns, as in the visit of a step, not in a stage.
-  void meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies, GridStats& found);
-
  private:
   void begin_stages(const World<R>& world, const GridStats& found);
   void run_stage(World<R>& world, const Obstacles& obstacles, double dt, int stage, const GridFields<R>& momenta);

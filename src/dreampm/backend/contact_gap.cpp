@@ -143,14 +143,6 @@ bool ContactGaps::reaches_colliders(const NearBlock& near_block, const Obstacles
                                   ThinWalls(obstacles, near_block.stencil_blocks).any());
 }
 
-void ContactGaps::set_gaps(std::int32_t number, const float* gaps) {
-  CellGaps& to = cell_gaps_[static_cast<std::size_t>(number)];
-  for (std::size_t side = 0; side < 6; ++side, gaps += block_nodes) {
-    std::copy_n(gaps, block_nodes, to.gap[side].begin());
-    to.any[side] = std::any_of(gaps, gaps + block_nodes, [](float gap) { return gap < far_away; });
-  }
-}
-
 void ContactGaps::clear_block(std::size_t block) {
   if (gaps_of_.empty() || gaps_of_[block] < 0) return;
   CellGaps& gaps = cell_gaps_[static_cast<std::size_t>(gaps_of_[block])];

@@ -111,8 +111,6 @@ class ContactGaps {
   const std::vector<std::array<std::int32_t, 6>>& walls_of() const { return walls_of_; }
   /// True if particles of that block may be in reach of colliders.
   bool reaches_colliders(const NearBlock& near_block, const Obstacles& obstacles) const;
-  /// Takes over what was measured there: the gaps of that number [cells], block_nodes a side.
-  void set_gaps(std::int32_t number, const float* gaps);
 
  private:
   /// The smallest gap of the particles whose stencils begin at each node of a block, by the side of

@@ -39,7 +39,6 @@ struct GridUpdate<R>::Work {
   MirrorWalls<R> images;
   SurfaceContact<R> surfaces;
   ContactGaps gaps;
-  std::vector<std::uint32_t> surface_blocks;   ///< as GridUpdate::surface_blocks
   std::vector<std::uint32_t> deferred_blocks;  ///< blocks whose contact has to wait for the results of others
   // Arrays by block.
   std::vector<std::uint64_t> at_walls;
@@ -163,42 +162,10 @@ const SurfaceContact<R>& GridUpdate<R>::surfaces() const {
 }
 
 template <class R>
-const std::vector<std::uint32_t>& GridUpdate<R>::surface_blocks() const {
-  return work_->surface_blocks;
-}
-
-template <class R>
-void GridUpdate<R>::find_gap_blocks(std::vector<std::uint32_t>& blocks) const {
-  work_->surfaces.find_blocks_around(blocks);
-}
-
-template <class R>
-void GridUpdate<R>::meet_surfaces(World<R>& world, const Obstacles& obstacles, double dt, bool bodies,
-                                  GridStats& found) {
-  Work& w = *work_;
-  for (const std::uint32_t b : w.surface_blocks) {
-    BlockStats& stats = w.block_stats[b];
-    stats.clear();
-    for (std::size_t f = 0; f < 2; ++f)
-      for (std::size_t n = b * std::size_t{block_nodes}; n < (b + std::size_t{1}) * block_nodes; ++n)
-        if (!world.grid.field(f).empty()) stats.sums.mass += static_cast<double>(world.grid.field(f)[n].m);
-  }
-  if (bodies) w.surfaces.begin_bodies(world, dt);
-  parallel_region([&](ThreadTeam& team) {
-    const FlushToZero mode;
-    w.surfaces.of_all_fields(team, world, obstacles, w.gaps, static_cast<R>(world.dx / dt), w.block_stats);
-  });
-  w.surfaces.end_bodies();
-  for (const std::uint32_t b : w.surface_blocks)
-    for (const auto& [source, sum] : w.block_stats[b].impulses) impulse_of(found, source) += sum;
-}
-
-template <class R>
 void GridUpdate<R>::prepare(const World<R>& world, const Obstacles& obstacles) {
   const std::size_t blocks = world.grid.blocks.size();
   work_->images.prepare(world);
   work_->surfaces.prepare(world, obstacles);
-  work_->surfaces.find_blocks(work_->surface_blocks);
   work_->gaps.prepare(world, obstacles);
   work_->block_stats.resize(std::max(work_->block_stats.size(), blocks));
   work_->sums.resize((blocks + blocks_a_sum - 1) / blocks_a_sum);

@@ -4,7 +4,6 @@
 // on a surface is then in balance at every node. Stopping the nodes inside the collider instead
 // would leave the nodes outside without the reaction of the surface.
 #pragma once
-#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -40,22 +39,6 @@ class SurfaceContact {
   bool set_velocities(const World<R>& world, const Obstacles& obstacles);
   /// True if contact may change nodes of this grid block.
   bool changes(std::size_t block) const { return !node_block_index_.empty() && node_block_index_[block] >= 0; }
-
-  /// The grid blocks that it looks at and may change, into `blocks`.
-  void find_blocks(std::vector<std::uint32_t>& blocks) const {
-    blocks.clear();
-    for (const NodeBlock& node_block : node_blocks_) blocks.push_back(static_cast<std::uint32_t>(node_block.block));
-  }
-
-  /// The grid blocks around those of its points, at which it asks for gaps, into `blocks`, rising.
-  void find_blocks_around(std::vector<std::uint32_t>& blocks) const {
-    blocks.clear();
-    for (const PointBlock& point_block : point_blocks_)
-      for (const std::int32_t b : point_block.around)
-        if (b != BlockList::none) blocks.push_back(static_cast<std::uint32_t>(b));
-    std::sort(blocks.begin(), blocks.end());
-    blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
-  }
 
   /// The nodes of `field` hold velocities; contact acts on what they are relative to the
   /// colliders'. Adds the reactions of colliders to `found`, by grid block: of a node at several
@@ -175,6 +158,8 @@ class SurfaceContact {
   std::int32_t node_block_of_block(std::size_t block) const { return changes(block) ? node_block_index_[block] : -1; }
   /// True if any collider moves.
   bool moves() const { return any_moves_; }
+  /// True of a rigid ball, which pressure cannot turn.
+  bool is_free_ball(std::size_t collider) const { return is_free_ball_[collider]; }
 
  private:
   /// Puts the points that there are aside.

@@ -130,24 +130,6 @@ struct MeasureColliderGaps {
   }
 };
 
-/// Copies some of the gaps side by side.
-struct CopyGaps {
-  static constexpr int threads = 128;
-  struct Shared {};
-  const std::int32_t* numbers;
-  const std::int32_t* gaps;
-  std::int32_t* copies;
-
-  template <class Block>
-  DM_FN void operator()(Block& block, Shared&) const {
-    const std::int64_t from = std::int64_t{numbers[block.index()]} * block_gaps,
-                       to = std::int64_t{block.index()} * block_gaps;
-    block.each_thread([&](int t) {
-      for (int n = t; n < block_gaps; n += threads) copies[to + n] = gaps[from + n];
-    });
-  }
-};
-
 /// The nodes of one block of the grid on a wall or behind it, as ContactGaps::WallNodes.
 struct WallPlane {
   std::int32_t from[4];  ///< numbers of gaps of the blocks with the wall: itself, those before it along both axes

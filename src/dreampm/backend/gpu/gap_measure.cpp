@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
-#include "dreampm/backend/gpu/surface_solver.h"
-
 namespace dreampm::gpu {
 
-void GapMeasure::prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
-  const ContactGaps& gaps = host.gaps();
+void GapMeasure::prepare(const World<float>& world, const Obstacles& obstacles, const ContactGaps& gaps) {
   for (std::size_t f = 0; f < 2; ++f) gapped_[f] = gaps.has(world, f);
   std::vector<NearWalls> near;
   std::vector<std::uint32_t> colliders;
@@ -24,20 +21,13 @@ void GapMeasure::prepare(const World<float>& world, const Obstacles& obstacles, 
   }
   std::vector<std::int32_t> walls_of;
   for (const auto& of_block : gaps.walls_of()) walls_of.insert(walls_of.end(), of_block.begin(), of_block.end());
-  asked_home_.clear();
-  if (!SurfaceSolver::takes(world) && !gaps.gaps_of().empty()) {
-    std::vector<std::uint32_t> blocks;
-    host.find_gap_blocks(blocks);
-    for (const std::uint32_t b : blocks)
-      if (gaps.gaps_of()[b] >= 0) asked_home_.push_back(gaps.gaps_of()[b]);
-  }
   near_.upload(near), near_colliders_.upload(colliders), planes_.upload(planes);
-  gaps_of_.upload(gaps.gaps_of()), walls_of_.upload(walls_of), asked_.upload(asked_home_);
+  gaps_of_.upload(gaps.gaps_of()), walls_of_.upload(walls_of);
   gaps_.resize(gaps.gap_count() * block_gaps);
   gap_.resize(planes.size() * plane_nodes);
 }
 
-void GapMeasure::measure(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin) {
+void GapMeasure::measure(const World<float>& world, Memory& memory, bool thin) {
   if (!any()) return;
   launch(*device_, ClearGaps{gaps_.data(), ContactGaps::none}, gaps_.size() / block_gaps);
   for (std::size_t s = 0; s < world.sets.size(); ++s) {
@@ -59,12 +49,6 @@ void GapMeasure::measure(const World<float>& world, Memory& memory, ContactGaps&
          FindWallGaps{planes_.data(), static_cast<std::int32_t>(planes_.size()), gaps_.data(), ContactGaps::none,
                       gap_.data()},
          (planes_.size() + FindWallGaps::at_once - 1) / FindWallGaps::at_once);
-  if (asked_home_.empty()) return;
-  asked_gaps_.resize(asked_home_.size() * block_gaps), asked_gaps_home_.resize(asked_gaps_.size());
-  launch(*device_, CopyGaps{asked_.data(), gaps_.data(), asked_gaps_.data()}, asked_home_.size());
-  asked_gaps_.download(asked_gaps_home_);
-  for (std::size_t i = 0; i < asked_home_.size(); ++i)
-    gaps.set_gaps(asked_home_[i], asked_gaps_home_.data() + i * block_gaps);
 }
 
 }  // namespace dreampm::gpu

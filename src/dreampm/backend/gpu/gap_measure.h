@@ -20,17 +20,14 @@ class GapMeasure {
         gaps_of_(device),
         walls_of_(device),
         gaps_(device),
-        gap_(device),
-        asked_(device),
-        asked_gaps_(device) {}
-  /// Must be called after the same of `host`: after every change of the grid's block list, of the
+        gap_(device) {}
+  /// Must be called after the same of `gaps`: after every change of the grid's block list, of the
   /// particles' order or of colliders.
-  void prepare(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
+  void prepare(const World<float>& world, const Obstacles& obstacles, const ContactGaps& gaps);
   /// True if any matter has gaps.
   bool any() const { return gapped_[0] || gapped_[1]; }
-  /// Finds all gaps at the particles' places, and brings those to `gaps` that the host's contact
-  /// with surfaces asks for, where it does that. `thin`: whether SetMemory::distance is to be read.
-  void measure(const World<float>& world, Memory& memory, ContactGaps& gaps, bool thin);
+  /// Finds all gaps at the particles' places. `thin`: whether SetMemory::distance is to be read.
+  void measure(const World<float>& world, Memory& memory, bool thin);
   /// The gaps before walls of a field of the grid.
   GapPointers pointers(std::size_t field) const {
     return gapped_[field] ? GapPointers{walls_of_.data(), gap_.data()} : GapPointers{};
@@ -46,10 +43,6 @@ class GapMeasure {
   Buffer<WallPlane> planes_;
   Buffer<std::int32_t> gaps_of_, walls_of_, gaps_;
   Buffer<float> gap_;
-  // Those that the host asks for.
-  std::vector<std::int32_t> asked_home_;
-  Buffer<std::int32_t> asked_, asked_gaps_;
-  std::vector<float> asked_gaps_home_;
 };
 
 }  // namespace dreampm::gpu

@@ -110,13 +110,13 @@ class Gpu final : public Backend<float> {
     check_whole();
     visit_nodes_there(world);
     if (visit_.gapped()) thin_.measure(world, memory_, obstacles_, stencil_blocks_);
-    return visit_(world, memory_, obstacles_, update_, dt, thin_.any());
+    return visit_(world, memory_, dt, thin_.any());
   }
 
   double sub_cycle(World<float>& world, double dt, GridStats& found) override {
     fit_grid(world, next_);
     visit_nodes_there(world);
-    return stages_(world, memory_, visit_, passes_, obstacles_, update_, next_, dt, found);
+    return stages_(world, memory_, visit_, passes_, next_, dt, found);
   }
 
   PassStats g2p2g(World<float>& world, double dt, double dt_next, Motion<float>* motion) override {

@@ -53,7 +53,6 @@ GridVisit::GridVisit(Device& device)
       deep_groups_(device),
       deep_nodes_(device),
       deep_surfaces_(device),
-      at_surfaces_(device),
       gaps_(device),
       surfaces_(device) {}
 
@@ -62,17 +61,15 @@ void GridVisit::prepare(const World<float>& world, const Obstacles& obstacles, G
   find_shared(world, reached);
   find_entries(world, obstacles, host);
   find_deep(world, obstacles);
-  gaps_.prepare(world, obstacles, host);
+  gaps_.prepare(world, obstacles, host.gaps());
   surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
-  if (!SurfaceSolver::takes(world)) at_surfaces_.choose(host.surface_blocks());
 }
 
 void GridVisit::colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host) {
   find_deep(world, obstacles);
-  if (!obstacles.changed()) return surfaces_.set_velocities(obstacles, host.surfaces());
-  gaps_.prepare(world, obstacles, host);
+  if (!obstacles.changed()) return surfaces_.set_velocities(world, obstacles, host.surfaces());
+  gaps_.prepare(world, obstacles, host.gaps());
   surfaces_.prepare(world, obstacles, host.surfaces(), host.gaps());
-  if (!SurfaceSolver::takes(world)) at_surfaces_.choose(host.surface_blocks());
 }
 
 /// Finds the blocks that matter of both fields reaches, and what lies around them.
@@ -201,28 +198,23 @@ std::vector<ImageLayer> GridVisit::find_layers(const BlockList& list, const Mirr
   return layers;
 }
 
-GridStats GridVisit::operator()(World<float>& world, Memory& memory, const Obstacles& obstacles,
-                                GridUpdate<float>& host, double dt, bool thin) {
+GridStats GridVisit::operator()(const World<float>& world, Memory& memory, double dt, bool thin) {
   GridStats total;
   total.colliders.resize(world.colliders.size());
-  gaps_.measure(world, memory, host.gaps(), thin);
+  gaps_.measure(world, memory, thin);
   VisitInput in = input(world, memory, dt, world.viscous_stages == 0 ? 1 : 0);
   in.all_wait = fields_.begin(world, dt) || in.all_wait;
   launch(*device_, BeginVisit{in}, blocks_.size());
   fields_.apply(in);
-  contact(in, nullptr, world, memory, obstacles, host, dt, total);
+  contact(in, nullptr, world, dt);
   fields_.find_work(in);
   add_results(in, nullptr, total);
   return total;
 }
 
-void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<float>& world, Memory& memory,
-                        const Obstacles& obstacles, GridUpdate<float>& host, double dt, GridStats& found) {
+void GridVisit::contact(const VisitInput& in, const StageInput* stage, const World<float>& world, double dt) {
   lay_parts(in, stage);
-  if (SurfaceSolver::takes(world))
-    surfaces_(in, world, gaps_, dt);
-  else
-    meet_surfaces(world, memory, obstacles, host, dt, !stage, found);
+  surfaces_(in, world, gaps_, dt, !stage);
   const auto folded = [&](int axis) {
     return folded_.data() + axes_[static_cast<std::size_t>(axis)] * 2 * plane_nodes;
   };
@@ -239,14 +231,6 @@ void GridVisit::contact(const VisitInput& in, const StageInput* stage, World<flo
     launch(*device_, FinishVisit{in, waiting_.data()}, waiting_.size());
   for (int axis = 0; folds_ && axis < 3; ++axis)
     launch(*device_, ReflectImages{in, layers(axis), folded(axis)}, blocks_of(layers(axis)));
-}
-
-void GridVisit::meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                              double dt, bool bodies, GridStats& found) {
-  const std::size_t fields = world.grid.solids.empty() ? 1 : 2;
-  for (std::size_t f = 0; f < fields; ++f) at_surfaces_.download(world, memory, of_field(nodes, f));
-  host.meet_surfaces(world, obstacles, dt, bodies, found);
-  for (std::size_t f = 0; f < fields; ++f) at_surfaces_.upload(world, memory, of_field(nodes, f));
 }
 
 VisitInput GridVisit::input(const World<float>& world, Memory& memory, double dt, double part) {

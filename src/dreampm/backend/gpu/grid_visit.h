@@ -10,7 +10,6 @@
 #include "dreampm/backend/gpu/gap_measure.h"
 #include "dreampm/backend/gpu/launch.h"
 #include "dreampm/backend/gpu/set_memory.h"
-#include "dreampm/backend/gpu/some_blocks.h"
 #include "dreampm/backend/gpu/surface_solver.h"
 
 namespace dreampm::gpu {
@@ -26,11 +25,8 @@ class GridVisit {
   void colliders_moved(const World<float>& world, const Obstacles& obstacles, GridUpdate<float>& host);
   /// True if any matter has gaps before walls or colliders.
   bool gapped() const { return gaps_.any(); }
-  /// As Backend::grid_update. `thin`: whether SetMemory::distance is to be read. Beside rigid
-  /// bodies contact with surfaces is the host's: the blocks of nodes that it looks at go there and
-  /// come back, and are overwritten in the World.
-  GridStats operator()(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                       double dt, bool thin);
+  /// As Backend::grid_update. `thin`: whether SetMemory::distance is to be read.
+  GridStats operator()(const World<float>& world, Memory& memory, double dt, bool thin);
   /// As MirrorWalls::add_image_mass.
   void add_image_mass(const World<float>& world, Memory& memory, double dt);
 
@@ -39,9 +35,8 @@ class GridVisit {
   /// `part`: as node_constants.
   VisitInput input(const World<float>& world, Memory& memory, double dt, double part);
   /// All between the first kernel of a visit, or of a stage if that is not null, and its sums. In a
-  /// visit rigid bodies are unknowns, as in GridUpdate::meet_surfaces.
-  void contact(const VisitInput& in, const StageInput* stage, World<float>& world, Memory& memory,
-               const Obstacles& obstacles, GridUpdate<float>& host, double dt, GridStats& found);
+  /// visit rigid bodies are unknowns.
+  void contact(const VisitInput& in, const StageInput* stage, const World<float>& world, double dt);
   /// Adds the sums. Returns the work of gravity and stress in a stage [J].
   double add_results(const VisitInput& in, const StageInput* stage, GridStats& total);
   /// The work of force fields [J], as the nodes move now.
@@ -57,9 +52,6 @@ class GridVisit {
   void find_entries(const World<float>& world, const Obstacles& obstacles, const GridUpdate<float>& host);
   std::vector<ImageLayer> find_layers(const BlockList& list, const MirrorWalls<float>& images);
   void find_deep(const World<float>& world, const Obstacles& obstacles);
-  /// `bodies`: as GridUpdate::meet_surfaces.
-  void meet_surfaces(World<float>& world, Memory& memory, const Obstacles& obstacles, GridUpdate<float>& host,
-                     double dt, bool bodies, GridStats& found);
   LayersInput layers(int axis) const;
   /// Sums that come home together, in their order.
   enum Part : std::size_t {
@@ -110,7 +102,6 @@ class GridVisit {
   Buffer<DeepNode> deep_nodes_;
   Buffer<ColliderSurface> deep_surfaces_;
   std::vector<std::int32_t> collider_of_group_;
-  SomeNodes at_surfaces_;
   GapMeasure gaps_;
   SurfaceSolver surfaces_;
 };

@@ -75,10 +75,10 @@ using FlowKernels = KernelList<OpenColumns, PlaceSeeds, HoldCells, FindEmptyBloc
 using GridKernels =
     KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass,
                MeetDeep, CopyBlocks, FillBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
-               MeasureColliderGaps, FindWallGaps, CopyGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
+               MeasureColliderGaps, FindWallGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
                AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
-using SurfaceKernels =
-    KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, ApplyImpulses, FinishSurfaces>;
+using SurfaceKernels = KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, SumBodies,
+                                  ApplyImpulses, FinishSurfaces>;
 /// Those of programs that read particles on the device.
 using ReaderKernels = KernelList<CopyParticles>;
 template <class... M>

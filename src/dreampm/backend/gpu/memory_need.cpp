@@ -26,10 +26,9 @@ std::size_t of_particle(const World<float>& world, const ParticleSet<float>& set
 
 /// Of a block of the grid, for its contact with colliders; points of surfaces are few where matter
 /// is.
-std::size_t of_collider_block(const World<float>& world, std::size_t velocity_fields) {
+std::size_t of_collider_block(const World<float>& world) {
   if (world.colliders.empty()) return 0;
   const std::size_t distances = 2 * node_bytes;  // and their way from the host
-  if (!world.rigid.empty()) return distances + velocity_fields * node_bytes;
   constexpr std::size_t points = 8, stencil = 27 * (2 * sizeof(float) + sizeof(PointOfNode));
   return distances + block_nodes * (sizeof(ContactNode) + sizeof(NodeState)) +
          points * (sizeof(ContactPoint) + sizeof(PointState) + sizeof(Vec3<float>) + stencil);
@@ -56,12 +55,12 @@ std::size_t bytes_needed(const World<float>& world) {
            (fields * arena_nodes * sizeof(NodeCounts) +
             world.sets.size() * (2 * cells + SortInput::neighbors * sizeof(float)) + sizeof(BlockSums) + tables);
   const bool solid = std::any_of(world.sets.begin(), world.sets.end(), [](const auto& set) { return !set.liquid; });
-  const std::size_t gaps = solid ? (world.rigid.empty() ? 1 : 2) * block_gaps * sizeof(float) : 0;
+  const std::size_t gaps = solid ? block_gaps * sizeof(float) : 0;
   const std::size_t forces =
       world.fields.empty() ? 0 : velocity_fields * block_nodes * sizeof(Vec3<float>) + sizeof(SourceTerms);
   // One more field is on its way in a sort.
   bytes += world.grid.blocks.size() * ((fields + 1 + (stages ? 3 * velocity_fields : 0)) * node_bytes + gaps + forces +
-                                       of_collider_block(world, velocity_fields) + tables);
+                                       of_collider_block(world) + tables);
   return bytes + bytes / 8;  // Buffers have room to grow
 }
 

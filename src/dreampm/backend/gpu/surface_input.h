@@ -14,13 +14,16 @@ struct ContactPoint {
   Vec3<float> at;  ///< cells from its block's first node
   Vec3<float> normal, from_edge;
   Vec3<float> velocity, spin;  ///< m/s and rad/s, of the collider at it
+  Vec3<float> arm;             ///< m, from the center of the collider's motion
   float area;                  ///< dx^2
   std::uint32_t block;         ///< its number among the blocks with points
   std::uint32_t deep;          ///< nodes of its stencil that take no part, a bit each
   std::int32_t limiter;        ///< the point that limits its impulse at an edge, or -1
   std::int8_t first[3];        ///< node of its stencil
   bool limits;                 ///< whether it limits another one
+  std::uint8_t iterations;     ///< of its impulse in each solve
   std::uint16_t collider;
+  std::int32_t body;  ///< the rigid body that it is of, or -1
 
   DM_FN Vec3i node(int m) const { return {first[0] + m / 9, first[1] + m / 3 % 3, first[2] + m % 3}; }
   /// The velocity of the collider at a node [m/s].
@@ -50,7 +53,13 @@ struct CollidingMatter {
   WallType type;
   bool gapped;  ///< whether matter may come nearer where it has a gap
   float friction;
-  double sticky;  ///< Pa
+  double sticky;     ///< Pa
+  bool rigid, ball;  ///< whether it is a rigid body, and one that pressure cannot turn
+  Vec3d center;      ///< m, of its motion
+};
+/// How a rigid body moves [m/s, rad/s].
+struct BodyMotion {
+  Vec3d velocity, spin;
 };
 /// What a block with nodes of points may receive from one collider.
 struct SurfaceGroup {
@@ -62,6 +71,8 @@ struct SurfaceGroup {
 struct PointState {
   bool acts;
   float mass, effective_mass, surface_speed, approach, extrapolated, impulse[2];
+  float held;        ///< of a rigid body's: its speed along the normal per velocity of the body [1]
+  Vec3<float> turn;  ///< and per spin [m]
 };
 /// And of a node.
 struct NodeState {
@@ -94,8 +105,10 @@ struct SurfaceInput {
   float* velocity_weights;  ///< 27 a point: of a node's velocity in that of the point [1]
   float* inverse_masses;    ///< as points_of: velocity of the node per impulse [1/kg]
   NodeState* node_states;
-  std::int32_t* fastest2;  ///< less the bits of the square of the largest speed
-  SourceTerms* given;      ///< by entry of groups
+  std::int32_t* fastest2;    ///< less the bits of the square of the largest speed
+  SourceTerms* given;        ///< by entry of groups
+  const BodyMotion* bodies;  ///< where they are unknowns, else null
+  Vec3d period;              ///< m, of periodic axes; 0 of others
 
   /// The number of a node in the grid, and the node.
   DM_FN std::int64_t in_grid(std::int64_t number) const {

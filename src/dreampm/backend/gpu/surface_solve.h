@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "dreampm/backend/body_sums.h"
 #include "dreampm/backend/gpu/contact_gaps.h"
 #include "dreampm/backend/gpu/surface_input.h"
 
@@ -25,7 +26,7 @@ struct FindActingPoints {
       if (i >= all.count) return;
       const ContactPoint& p = all.points[i];
       const CollidingMatter collider = all.colliders[p.collider];
-      PointState state{true, 0, 0, 0, 0, 0, {0, 0}};
+      PointState state{true, 0, 0, 0, 0, 0, {0, 0}, 0, {0, 0, 0}};
       if (all.gaps && collider.gapped) {
         const float gap = gap_at(p);
         state.approach = gap * all.per_dt;
@@ -128,8 +129,10 @@ struct FindEffectiveMasses {
       PointState& state = all.point_states[i];
       const ContactPoint& p = all.points[i];
       if (!state.acts && !(state.mass > 0 && p.limits)) return;
+      const auto dx = static_cast<float>(all.in.places.dx);
+      const bool unknown = all.bodies && p.body >= 0;
       float held = 0, row = 0;
-      Vec3<float> surface{0, 0, 0};
+      Vec3<float> surface{0, 0, 0}, arm{0, 0, 0};
       float* const weights = all.velocity_weights + 27 * std::int64_t{i};
       for (int m = 0; m < 27; ++m) weights[m] = 0;
       PointWeights(p).each(all, p, [&](int m, const Vec3i& place, float w, std::int64_t n) {
@@ -137,11 +140,13 @@ struct FindEffectiveMasses {
         const float inverse_mass = bounded_inverse_mass(w, mass, all.nodes[n].open_fraction, state.mass);
         weights[m] = inverse_mass * mass;
         held += weights[m];
-        if (all.moves) surface += p.velocity_at(place, static_cast<float>(all.in.places.dx)) * weights[m];
+        if (all.moves) surface += p.velocity_at(place, dx) * weights[m];
+        if (unknown) arm += (p.arm + (static_cast<Vec3<float>>(place) - p.at) * dx) * weights[m];
         row += inverse_mass * all.node_states[n].facing.m;
       });
       state.effective_mass = effective_mass_of(held, row, state.acts);
       state.surface_speed = dot(surface, p.normal);
+      if (unknown) state.held = held, state.turn = all.colliders[p.collider].ball ? state.turn : cross(arm, p.normal);
     });
   }
 };
@@ -159,26 +164,75 @@ struct DescendPoints {
       const std::int32_t i = block.index() * threads + t;
       if (i >= all.count) return;
       PointState state = all.point_states[i];
-      if (!state.acts || !(state.effective_mass > 0)) return;
       const ContactPoint& p = all.points[i];
+      if (!state.acts || !(state.effective_mass > 0) || step > p.iterations) return;
+      if (step == p.iterations) {  // from here on it stays as it is
+        all.point_states[i].impulse[0] = state.impulse[1];
+        all.changes[i] = {0, 0, 0};
+        return;
+      }
       const CollidingMatter collider = all.colliders[p.collider];
       const float* const weights = all.velocity_weights + 27 * std::int64_t{i};
       Vec3<float> v{0, 0, 0};
       PointWeights(p).each(
           all, p, [&](int m, const Vec3i&, float, std::int64_t n) { v += velocity(all.node(n)) * weights[m]; });
-      float now =
-          descended(state.extrapolated, dot(v, p.normal) - state.surface_speed, state.effective_mass, state.approach,
-                    collider.type == WallType::separate, least_impulse(collider.sticky, all.in.places.dx, all.per_dt));
+      float now = descended(state.extrapolated, dot(v, p.normal) - surface_speed(p, state), state.effective_mass,
+                            state.approach, collider.type == WallType::separate,
+                            least_impulse(collider.sticky, all.in.places.dx, all.per_dt));
       const int now_at = step & 1, before_at = 1 - now_at;
       if (step > 0 && p.limiter >= 0) {
         const PointState& limiter = all.point_states[p.limiter];
         if (limiter.effective_mass > 0)
           now = limited_at_edge(now, limiter.impulse[before_at], p.from_edge, state.mass, all.gravity_kick);
       }
-      const float extrapolated = now + (now - state.impulse[before_at]) * momentum_of_descent<float>(step, last);
+      const float extrapolated =
+          now + (now - state.impulse[before_at]) *
+                    momentum_of_descent<float>(step, p.iterations <= last ? p.iterations - 1 : last);
       all.changes[i] = p.normal * ((extrapolated - state.extrapolated) * p.area);
       all.point_states[i].impulse[now_at] = now;
       all.point_states[i].extrapolated = extrapolated;
+    });
+  }
+
+ private:
+  /// Along the normal [m/s].
+  DM_FN float surface_speed(const ContactPoint& p, const PointState& state) const {
+    if (!all.bodies || p.body < 0) return state.surface_speed;
+    const BodyMotion body = all.bodies[p.body];
+    return static_cast<float>(dot(static_cast<Vec3d>(p.normal) * static_cast<double>(state.held), body.velocity) +
+                              dot(static_cast<Vec3d>(state.turn), body.spin));
+  }
+};
+
+/// What matter does to rigid bodies. A block of threads takes a range of points.
+struct SumBodies {
+  static constexpr int threads = 64;
+  struct Shared {
+    BodySums sums[threads];
+  };
+  SurfaceInput all;
+  const std::uint32_t* points;  ///< of bodies, those of one together
+  const Range* ranges;
+  BodySums* to;  ///< by range
+
+  template <class Block>
+  DM_FN void operator()(Block& block, Shared& shared) const {
+    const Range range = ranges[block.index()];
+    block.each_thread([&](int t) {
+      BodySums sums = BodySums::none();
+      for (std::uint32_t i = range.begin + static_cast<std::uint32_t>(t); i < range.end; i += threads) {
+        const PointState& state = all.point_states[points[i]];
+        if (!state.acts || !(state.effective_mass > 0)) continue;
+        const ContactPoint& p = all.points[points[i]];
+        const double area = static_cast<double>(p.area), impulse = static_cast<double>(state.extrapolated);
+        sums.add_point(static_cast<Vec3d>(p.normal) * static_cast<double>(state.held), static_cast<Vec3d>(state.turn),
+                       area * impulse, impulse != 0 ? area * static_cast<double>(state.effective_mass) : 0);
+      }
+      shared.sums[t] = sums;
+    });
+    add_up_threads<threads>(block, shared.sums);
+    block.each_thread([&](int t) {
+      if (t == 0) to[block.index()] = shared.sums[0];
     });
   }
 };
@@ -234,13 +288,34 @@ struct FinishSurfaces {
       block.each_thread([&](int t) {
         if (t != 0) return;
         SourceTerms sum = all.field == 0 ? SourceTerms::none() : all.given[group.entry];
-        sum.add(all.in.places.about_origin(shared.given[0], first));
+        sum.add(about_origin(shared.given[0], all.colliders[group.collider], first));
         all.given[group.entry] = sum;
       });
     }
   }
 
  private:
+  /// The impulse of a block. That of a ball goes through its middle.
+  DM_FN SourceTerms about_origin(const ImpulseTerms<float>& given, const CollidingMatter& collider,
+                                 const Vec3i& first) const {
+    SourceTerms sum = all.in.places.about_origin(given, first);
+    if (all.frictional || !collider.ball) return sum;
+    const Vec3d angular = cross(collider.center, Vec3d{sum.impulse[0], sum.impulse[1], sum.impulse[2]});
+    for (int a = 0; a < 3; ++a) sum.angular[a] = angular[a];
+    return sum;
+  }
+  /// Of a node in its block [cells]; of rigid bodies the copy nearest to their center: one at a
+  /// periodic end has matter beyond the other.
+  DM_FN Vec3<float> place(std::int64_t number, int n, const CollidingMatter& collider) const {
+    Vec3<float> at = static_cast<Vec3<float>>(node_offset(n));
+    if (!collider.rigid) return at;
+    const Vec3d there = all.in.places.of(all.in.blocks[all.node_blocks[number / block_nodes]].first + node_offset(n));
+    for (int a = 0; a < 3; ++a)
+      if (all.period[a] > 0)
+        at[a] -= static_cast<float>(round_int((there[a] - collider.center[a]) / all.period[a]) * all.period[a] /
+                                    all.in.places.dx);
+    return at;
+  }
   DM_FN ImpulseTerms<float> finish(std::int64_t number, int n) const {
     const NodeState state = all.node_states[number];
     Node<float>& node = all.node(number);
@@ -264,7 +339,7 @@ struct FinishSurfaces {
     set_velocity(node, v);
     ImpulseSumOf<float> given;
     if (!(v == state.before))
-      given.add(static_cast<Vec3<float>>(node_offset(n)), node.m, state.before, v,
+      given.add(place(number, n, all.colliders[state.collider]), node.m, state.before, v,
                 works_at(v, state.surface, facing, all.frictional));
     return ImpulseTerms<float>::of(given);
   }

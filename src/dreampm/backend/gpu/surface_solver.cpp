@@ -16,6 +16,10 @@ SurfaceSolver::SurfaceSolver(Device& device)
       colliders_(device),
       groups_(device),
       ranges_(device),
+      body_points_(device),
+      body_ranges_(device),
+      body_sums_(device),
+      motions_(device),
       point_states_(device),
       changes_(device),
       velocity_weights_(device),
@@ -26,27 +30,31 @@ SurfaceSolver::SurfaceSolver(Device& device)
 
 void SurfaceSolver::prepare(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host,
                             const ContactGaps& gaps) {
-  const SurfaceContact<float> nothing;
-  const SurfaceContact<float>& from = takes(world) ? host : nothing;
-  find_points(obstacles, from, gaps);
-  find_nodes(from);
-  find_groups(world.colliders.size(), from);
-  std::vector<CollidingMatter> colliders;
-  for (const Collider& c : world.colliders)
-    colliders.push_back({c.contact(), !c.holds, static_cast<float>(c.friction), c.sticky});
-  colliders_.upload(colliders);
+  find_points(obstacles, host, gaps);
+  find_nodes(host);
+  find_groups(world.colliders.size(), host);
+  find_bodies(world);
   fastest2_.resize(1);
-  set_velocities(obstacles, from);
+  set_velocities(world, obstacles, host);
 }
 
-void SurfaceSolver::set_velocities(const Obstacles& obstacles, const SurfaceContact<float>& host) {
+void SurfaceSolver::set_velocities(const World<float>& world, const Obstacles& obstacles,
+                                   const SurfaceContact<float>& host) {
   if (node_blocks_.size() == 0) return;
+  std::vector<CollidingMatter> colliders;
+  for (std::size_t c = 0; c < world.colliders.size(); ++c) {
+    const Collider& one = world.colliders[c];
+    colliders.push_back({one.contact(), !one.holds, static_cast<float>(one.friction), one.sticky, one.rigid,
+                         host.is_free_ball(c), one.twist.center});
+  }
+  colliders_.upload(colliders);
   moves_ = host.moves();
   for (const auto& point_block : host.point_blocks()) {
     const std::vector<SurfacePoint>& surface = obstacles.points(point_block.block);
     for (std::size_t p = point_block.begin; p < point_block.end; ++p) {
-      points_home_[p].velocity = surface[p - point_block.begin].velocity;
-      points_home_[p].spin = surface[p - point_block.begin].spin;
+      const SurfacePoint& from = surface[p - point_block.begin];
+      ContactPoint& to = points_home_[p];
+      to.velocity = from.velocity, to.spin = from.spin, to.arm = static_cast<Vec3<float>>(from.arm);
     }
   }
   std::size_t first = 0;
@@ -70,18 +78,12 @@ void SurfaceSolver::find_points(const Obstacles& obstacles, const SurfaceContact
       const SurfacePoint& from = surface[p - point_block.begin];
       const auto& known = host.points()[p];
       ContactPoint& to = points_home_[p];
-      to = {from.at,
-            from.normal,
-            from.from_edge,
-            from.velocity,
-            from.spin,
-            from.area,
-            static_cast<std::uint32_t>(blocks.size()),
-            from.deep,
-            known.edge_limiter,
-            {},
-            known.limits,
-            from.collider};
+      to = {};
+      to.at = from.at, to.normal = from.normal, to.from_edge = from.from_edge, to.area = from.area;
+      to.block = static_cast<std::uint32_t>(blocks.size()), to.deep = from.deep;
+      to.limiter = known.edge_limiter, to.limits = known.limits;
+      to.iterations = static_cast<std::uint8_t>(point_block.iterations);
+      to.collider = from.collider, to.body = -1;
       std::copy(from.first.begin(), from.first.end(), to.first);
     }
     PointBlock& block = blocks.emplace_back();
@@ -168,6 +170,27 @@ void SurfaceSolver::find_groups(std::size_t colliders, const SurfaceContact<floa
   given_.resize(count);
 }
 
+void SurfaceSolver::find_bodies(const World<float>& world) {
+  std::vector<std::vector<std::uint32_t>> of_body(world.rigid.size());
+  for (std::size_t b = 0; b < world.rigid.size(); ++b)
+    for (std::size_t p = 0; p < points_home_.size(); ++p)
+      if (points_home_[p].collider == world.rigid[b].collider) {
+        points_home_[p].body = static_cast<std::int32_t>(b);
+        of_body[b].push_back(static_cast<std::uint32_t>(p));
+      }
+  std::vector<std::uint32_t> points;
+  std::vector<Range> ranges;
+  body_of_range_.clear();
+  for (std::size_t b = 0; b < of_body.size(); ++b) {
+    const auto begin = static_cast<std::uint32_t>(points.size());
+    points.insert(points.end(), of_body[b].begin(), of_body[b].end());
+    add_ranges(begin, static_cast<std::uint32_t>(points.size()), ranges);
+    body_of_range_.resize(ranges.size(), b);
+  }
+  body_points_.upload(points), body_ranges_.upload(ranges);
+  body_sums_.resize(ranges.size()), body_sums_home_.resize(ranges.size(), BodySums::none());
+}
+
 SurfaceInput SurfaceSolver::input(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt,
                                   std::size_t field) const {
   SurfaceInput all{};
@@ -186,27 +209,55 @@ SurfaceInput SurfaceSolver::input(const VisitInput& in, const World<float>& worl
   all.gaps = gaps.cells(field), all.no_gap = ContactGaps::none;
   all.point_states = point_states_.data(), all.changes = changes_.data();
   all.velocity_weights = velocity_weights_.data(), all.inverse_masses = inverse_masses_.data();
+  for (int a = 0; a < 3; ++a)
+    all.period[a] = world.periodic[static_cast<std::size_t>(a)] ? (world.high[a] - world.low[a]) * world.dx : 0;
   all.node_states = node_states_.data(), all.fastest2 = fastest2_.data(), all.given = given_.data();
   return all;
 }
 
-void SurfaceSolver::operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt) {
-  const std::size_t blocks = node_blocks_.size(), points = std::max<std::size_t>(points_.size(), 1);
-  if (blocks == 0) return;
-  const auto by_point = [&]<class K>(const K& kernel) { launch(*device_, kernel, blocks_for<K>(points)); };
+void SurfaceSolver::operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt,
+                               bool bodies) {
+  if (node_blocks_.size() == 0) return;
+  const bool coupled = bodies && body_points_.size() > 0;
+  if (coupled) {
+    coupling_.begin(world, dt);
+    motions_home_.resize(world.rigid.size());
+    send_bodies();
+  }
   for (std::size_t field = 0; field < 2; ++field) {
     if (world.grid.field(field).empty()) continue;
-    const SurfaceInput all = input(in, world, gaps, dt, field);
-    by_point(FindActingPoints{all});
-    launch(*device_, FindNodeAreas{all}, blocks);
-    by_point(FindEffectiveMasses{all});
-    constexpr int steps = ColliderContact::iterations;
-    for (int step = 0; step < steps; ++step) {
-      by_point(DescendPoints{all, step, steps - 1});
-      launch(*device_, ApplyImpulses{all}, blocks);
-    }
-    launch(*device_, FinishSurfaces{all, steps - 1}, blocks);
+    SurfaceInput all = input(in, world, gaps, dt, field);
+    all.bodies = coupled ? motions_.data() : nullptr;
+    solve_field(all, coupled);
   }
+}
+
+void SurfaceSolver::solve_field(const SurfaceInput& all, bool bodies) {
+  const std::size_t blocks = node_blocks_.size(), points = std::max<std::size_t>(points_.size(), 1);
+  const auto by_point = [&]<class K>(const K& kernel) { launch(*device_, kernel, blocks_for<K>(points)); };
+  by_point(FindActingPoints{all});
+  launch(*device_, FindNodeAreas{all}, blocks);
+  by_point(FindEffectiveMasses{all});
+  const int steps = bodies ? ColliderContact::body_iterations : ColliderContact::iterations;
+  for (int step = 0; step < steps; ++step) {
+    by_point(DescendPoints{all, step, steps - 1});
+    if (bodies) solve_bodies(all);
+    launch(*device_, ApplyImpulses{all}, blocks);
+  }
+  launch(*device_, FinishSurfaces{all, steps - 1}, blocks);
+}
+
+void SurfaceSolver::solve_bodies(const SurfaceInput& all) {
+  launch(*device_, SumBodies{all, body_points_.data(), body_ranges_.data(), body_sums_.data()}, body_ranges_.size());
+  body_sums_.download(body_sums_home_);
+  for (std::size_t r = 0; r < body_sums_home_.size(); ++r) coupling_.add(body_of_range_[r], body_sums_home_[r]);
+  coupling_.solve();
+  send_bodies();
+}
+
+void SurfaceSolver::send_bodies() {
+  for (std::size_t b = 0; b < motions_home_.size(); ++b) motions_home_[b] = {coupling_.velocity(b), coupling_.spin(b)};
+  motions_.upload(motions_home_);
 }
 
 }  // namespace dreampm::gpu

@@ -1,5 +1,5 @@
-// Contact with the surfaces of colliders whose motion is known, at nodes in a device's memory, in
-// place of SurfaceContact.
+// Contact with the surfaces of colliders at nodes in a device's memory, in place of SurfaceContact.
+// The host solves for the velocities of rigid bodies, from sums over their points.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -15,17 +15,15 @@ namespace dreampm::gpu {
 class SurfaceSolver {
  public:
   explicit SurfaceSolver(Device& device);
-  /// True if it can solve for these colliders: the host does where rigid bodies are, whose
-  /// velocities are unknowns too.
-  static bool takes(const World<float>& world) { return world.rigid.empty(); }
   /// Must be called after the same of `host`: after every change of the grid's block list or of
-  /// colliders. Where it does not take the world it has no points.
+  /// colliders.
   void prepare(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host,
                const ContactGaps& gaps);
   /// Must be called instead where the velocities of colliders alone have changed.
-  void set_velocities(const Obstacles& obstacles, const SurfaceContact<float>& host);
-  /// Contact of all fields in a step of `dt` [s].
-  void operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt);
+  void set_velocities(const World<float>& world, const Obstacles& obstacles, const SurfaceContact<float>& host);
+  /// Contact of all fields in a step of `dt` [s]. `bodies`: whether rigid bodies are unknowns, as
+  /// in the visit of a step, not in a stage.
+  void operator()(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt, bool bodies);
   /// What colliders gave, and the ranges of it that belong together.
   const SourceTerms* given() const { return given_.data(); }
   const Buffer<Range>& ranges() const { return ranges_; }
@@ -36,6 +34,10 @@ class SurfaceSolver {
   void find_points(const Obstacles& obstacles, const SurfaceContact<float>& host, const ContactGaps& gaps);
   void find_nodes(const SurfaceContact<float>& host);
   void find_groups(std::size_t colliders, const SurfaceContact<float>& host);
+  void find_bodies(const World<float>& world);
+  void solve_field(const SurfaceInput& all, bool bodies);
+  void solve_bodies(const SurfaceInput& all);
+  void send_bodies();
   SurfaceInput input(const VisitInput& in, const World<float>& world, const GapMeasure& gaps, double dt,
                      std::size_t field) const;
 
@@ -52,6 +54,15 @@ class SurfaceSolver {
   Buffer<SurfaceGroup> groups_;
   Buffer<Range> ranges_;
   std::vector<std::int32_t> collider_of_range_;
+  // Rigid bodies: their points, those of one together, and what these add up to.
+  BodyCoupling coupling_;
+  Buffer<std::uint32_t> body_points_;
+  Buffer<Range> body_ranges_;
+  std::vector<std::size_t> body_of_range_;
+  Buffer<BodySums> body_sums_;
+  std::vector<BodySums> body_sums_home_;
+  Buffer<BodyMotion> motions_;
+  std::vector<BodyMotion> motions_home_;
   // Of one solve.
   Buffer<PointState> point_states_;
   Buffer<Vec3<float>> changes_;

@@ -5,8 +5,7 @@
 namespace dreampm::gpu {
 
 double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
-                                 const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next,
-                                 double dt, GridStats& found) {
+                                 GridFields<float>& next, double dt, GridStats& found) {
   sums_.begin(world.colliders.size(), found);
   const std::size_t blocks = world.grid.blocks.size();
   for (std::size_t f = 0; f < 2; ++f) {
@@ -34,7 +33,7 @@ double ViscousStages::operator()(World<float>& world, Memory& memory, GridVisit&
     launch(*device_, DragSolids{visit.shared_nodes(in), stage}, visit.shared_count());
     GridStats stats;
     stats.colliders.resize(world.colliders.size());
-    visit.contact(in, &stage, world, memory, obstacles, host, dt, stats);
+    visit.contact(in, &stage, world, dt);
     launch(*device_, EndStage{in, stage}, blocks);
     const double work = visit.add_results(in, &stage, stats);
     sums_.add(std::move(stats), work, factors.kept);

@@ -17,8 +17,7 @@ class ViscousStages {
         driven_(device) {}
   /// As Backend::sub_cycle. `next`: a grid as long as the World's.
   double operator()(World<float>& world, Memory& memory, GridVisit& visit, ParticlePasses& passes,
-                    const Obstacles& obstacles, GridUpdate<float>& host, GridFields<float>& next, double dt,
-                    GridStats& found);
+                    GridFields<float>& next, double dt, GridStats& found);
 
  private:
   Device* device_;
