@@ -137,6 +137,22 @@ materials: {water: {type: newtonian}}
 bodies: {pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}}
 rigid: {box: {shape: {box: {size: [0.08, 0.06, 0.08]}, center: [0.12, 0.11, 0.08]}, density: 500}}
 )"},
+    {"a ball and a box in water, and sand on the box, around a periodic box", R"(
+materials: {water: {type: newtonian}, sand: {type: sand, youngs_modulus: 1.0e5}}
+bodies:
+  pool: {material: water, shape: {box: {min: [0, 0, 0], max: [0.25, 0.08, 0.16]}}, velocity: [0.5, 0, 0], cut: [ball, box]}
+  heap: {material: sand, shape: {box: {min: [0.05, 0.13, 0.05], max: [0.11, 0.17, 0.11]}}}
+rigid:
+  ball: {shape: {sphere: {radius: 0.035}, center: [0.235, 0.09, 0.08]}, density: 600}
+  box: {shape: {box: {size: [0.09, 0.04, 0.09]}, center: [0.08, 0.09, 0.08]}, density: 500}
+)",
+     6, 0.03, ", periodic: [x]"},
+    {"a box that falls into honey, whose viscosity is sub-cycled", R"(
+materials: {honey: {type: newtonian, viscosity: 1000, density: 1400, bulk_modulus: 1.0e5}}
+bodies: {pool: {material: honey, shape: {box: {min: [0, 0, 0], max: [0.24, 0.08, 0.16]}}}}
+rigid: {box: {shape: {box: {size: [0.06, 0.06, 0.06]}, center: [0.12, 0.11, 0.08]}, density: 5000}}
+)",
+     6, 0.06, "", "", true},  // in float and double, too, such a fall differs by some percent
     {"a tap, a drain and probes", R"(
 materials: {water: {type: newtonian}}
 emitters:
