@@ -24,7 +24,7 @@ bodies:
 colliders: {{ball: {{shape: {{sphere: {{radius: 0.04}}, center: [0.18, 0.06, 0.08]}}, friction: 0.3}}}}
 """
 # What a scene may hold, as far as a device computes it: two velocity fields, viscosity in stages, boundary layers, images,
-# colliders that stand, move and are thin, force fields, an emitter, a sink.
+# colliders that stand, move and are thin, rigid bodies, force fields, an emitter, a sink.
 ALL_KINDS = """dreampm: 1
 name: all-kinds
 space: {max: [0.24, 0.2, 0.16], spacing: 0.02, walls: {all: {type: separate, skin_friction: true}, x_max: {type: stick}}}
@@ -33,14 +33,17 @@ materials:
   honey: {type: newtonian, viscosity: 1000, density: 1400, bulk_modulus: 1.0e5, transfer: flip, flip_memory: 0.03}
   sand: {type: sand, youngs_modulus: 1.0e5}
 bodies:
-  pool: {material: honey, shape: {box: {min: [0, 0, 0], max: [0.24, 0.05, 0.16]}}, cut: [ball, plate]}
-  heap: {material: sand, shape: {box: {min: [0.04, 0.06, 0.04], max: [0.12, 0.12, 0.12]}}, velocity: [1, -2, 0]}
+  pool: {material: honey, shape: {box: {min: [0, 0, 0], max: [0.24, 0.05, 0.16]}}, cut: [ball, plate, crate]}
+  heap: {material: sand, shape: {box: {min: [0.04, 0.06, 0.02], max: [0.12, 0.12, 0.08]}}, velocity: [1, -2, 0]}
 emitters:
   tap: {material: honey, shape: {cylinder: {radius: 0.03, height: 0.02}, center: [0.12, 0.16, 0.08]}, velocity: [0, -1, 0], pool: 400}
 sinks: {drain: {shape: {box: {min: [0, 0, 0], max: [0.05, 0.03, 0.16]}}}}
 colliders:
   ball: {shape: {sphere: {radius: 0.04}, center: [0.18, 0.04, 0.08]}, friction: 0.3, motion: {velocity: [-0.3, 0, 0]}}
   plate: {shape: {box: {size: [0.01, 0.1, 0.1]}, center: [0.14, 0.05, 0.06]}, type: stick}
+rigid:
+  crate: {shape: {box: {size: [0.06, 0.06, 0.06]}, center: [0.06, 0.05, 0.12]}, density: 500}
+  float: {shape: {sphere: {radius: 0.03}, center: [0.2, 0.13, 0.12]}, density: 700}
 fields:
   pull: {type: attractor, point: [0.2, 0.1, 0.08], strength: 0.2, radius: 0.05}
   hand: {type: brush, point: [0.08, 0.06, 0.08], radius: 0.05, velocity: [0, 1, 0]}

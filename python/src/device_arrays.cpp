@@ -19,7 +19,7 @@ namespace {
 std::shared_ptr<const DeviceArray> freed_without_gil(std::shared_ptr<const DeviceArray> array) {
   const DeviceArray* const it = array.get();
   return {it, [array = std::move(array)](const DeviceArray*) mutable {
-            if (PyGILState_Check() == 0) return array.reset();
+            if (Py_IsInitialized() == 0 || PyGILState_Check() == 0) return array.reset();
             const nb::gil_scoped_release free;
             array.reset();
           }};

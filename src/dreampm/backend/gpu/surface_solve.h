@@ -1,6 +1,7 @@
-// Contact at points of colliders' surfaces on a device: the kernels of backend/surface_contact.h,
-// for colliders whose motion is known. Points read nodes and nodes read points, so that no two
-// threads write the same number, and the bits do not depend on their order.
+// Contact at points of colliders' surfaces on a device: the kernels of backend/surface_contact.h.
+// The host solves for the velocities of rigid bodies (gpu/surface_solver.h). Points read nodes and
+// nodes read points, so that no two threads write the same number, and the bits do not depend on
+// their order.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -167,6 +168,8 @@ struct DescendPoints {
       const ContactPoint& p = all.points[i];
       if (!state.acts || !(state.effective_mass > 0) || step > p.iterations) return;
       if (step == p.iterations) {  // from here on it stays as it is
+        // So others may read the impulse of the last step meanwhile.
+        static_assert(ColliderContact::iterations % 2 == 0 && ColliderContact::body_iterations % 2 == 0);
         all.point_states[i].impulse[0] = state.impulse[1];
         all.changes[i] = {0, 0, 0};
         return;

@@ -171,13 +171,14 @@ void SurfaceSolver::find_groups(std::size_t colliders, const SurfaceContact<floa
 }
 
 void SurfaceSolver::find_bodies(const World<float>& world) {
+  std::vector<std::int32_t> body_of(world.colliders.size(), -1);
+  for (std::size_t b = 0; b < world.rigid.size(); ++b) body_of[world.rigid[b].collider] = static_cast<std::int32_t>(b);
   std::vector<std::vector<std::uint32_t>> of_body(world.rigid.size());
-  for (std::size_t b = 0; b < world.rigid.size(); ++b)
-    for (std::size_t p = 0; p < points_home_.size(); ++p)
-      if (points_home_[p].collider == world.rigid[b].collider) {
-        points_home_[p].body = static_cast<std::int32_t>(b);
-        of_body[b].push_back(static_cast<std::uint32_t>(p));
-      }
+  for (std::size_t p = 0; p < points_home_.size(); ++p) {
+    ContactPoint& point = points_home_[p];
+    point.body = body_of[point.collider];
+    if (point.body >= 0) of_body[static_cast<std::size_t>(point.body)].push_back(static_cast<std::uint32_t>(p));
+  }
   std::vector<std::uint32_t> points;
   std::vector<Range> ranges;
   body_of_range_.clear();

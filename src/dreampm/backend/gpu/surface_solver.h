@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "dreampm/backend/common.h"
+#include "dreampm/backend/body_coupling.h"
 #include "dreampm/backend/gpu/gap_measure.h"
 #include "dreampm/backend/gpu/launch.h"
 #include "dreampm/backend/gpu/set_memory.h"
