@@ -98,6 +98,14 @@ TEST_F(BackendChoice, ARunGoesFromOneToAnotherAndBack) {
   EXPECT_EQ(std::count(level.begin(), level.end(), '\n'), 1 + 9) << "a head, and a row a frame";
 }
 
+TEST_F(BackendChoice, AProjectionSaysThatItIsTheProcessors) {
+  const std::string wanted = "dam.yaml: time.solver: projection computes on the processor, with the backend cuda too";
+  const std::string line = "run dam.yaml --frames 1 --overwrite --set materials.jelly.transfer=apic --set time.solver=";
+  EXPECT_THAT(with_card(line + "projection --backend cuda").err, HasSubstr(wanted));
+  EXPECT_THAT(with_card(line + "projection").err, Not(HasSubstr("on the processor")));
+  EXPECT_THAT(with_card(line + "explicit --backend cuda").err, Not(HasSubstr("on the processor")));
+}
+
 TEST_F(BackendChoice, WithoutAWordItGoesOnByTheSameOneToTheBit) {
   ASSERT_EQ(with_card("run dam.yaml --out whole --backend cuda").code, 0);
   ASSERT_EQ(with_card("run dam.yaml --out parts --backend cuda --frames 4").code, 0);

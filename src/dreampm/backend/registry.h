@@ -40,6 +40,12 @@ std::vector<std::string> backend_names();
 std::vector<std::string> backends_here();
 /// Throws InputError with the names that there are; an empty name means the default.
 const BackendInfo& backend_info(std::string_view name);
+/// True if the backend of that name computes on a device, and not on the processor alone.
+inline bool has_device(std::string_view name) {
+  for (const BackendInfo& b : backends())
+    if (b.name == name) return b.device != nullptr;
+  return false;
+}
 /// The backend of that name, as backend_info() takes it.
 AnyBackend make_backend(std::string_view name, std::string_view isa = "auto");
 

@@ -1,5 +1,7 @@
 #include "dreampm/run/scene_engine.h"
 
+#include "dreampm/backend/registry.h"
+#include "dreampm/base/log.h"
 #include "dreampm/setup/fixed_dt.h"
 #include "dreampm/setup/place.h"
 #include "dreampm/setup/start.h"
@@ -16,6 +18,10 @@ SceneEngine<R>::SceneEngine(const model::Scene& scene, const std::string& file, 
       engine_(as_world<R>(start_.world), std::move(backend)),
       probes_(engine_, ProbeSet<R>(scene, start_, file)) {
   engine_.add(probes_);
+  const std::string_view name = engine_.backend().name();
+  if (start_.world.settings.solver == SolverKind::projection && has_device(name))
+    warn("{}: time.solver: projection computes on the processor, with the backend {} too; explicit uses its device",
+         file, name);
 }
 
 template <class R>
