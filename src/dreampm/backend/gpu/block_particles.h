@@ -28,6 +28,15 @@ DM_FN void each_particle_apart(const std::uint32_t* block_start, std::uint32_t b
   }
 }
 
+/// Calls body(i) for the items from 0 up to `count`, one a thread of all blocks.
+template <int threads, class Block, class Body>
+DM_FN void each_item(Block& block, std::int64_t count, const Body& body) {
+  block.each_thread([&](int t) {
+    const std::int64_t i = std::int64_t{block.index()} * threads + t;
+    if (i < count) body(i);
+  });
+}
+
 /// Node (i, j, k) of a particle's stencil, in the fields of the grid. `reached`: the eight blocks
 /// of the grid that its block reaches, as StencilBlocks.
 DM_FN std::int64_t node_in_reach(const std::int32_t* reached, const Stencil<float>& s, int i, int j, int k) {

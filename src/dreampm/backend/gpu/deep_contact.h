@@ -45,14 +45,12 @@ struct MeetDeep {
     const Vec3i first = in.blocks[at.block].first;
     for (std::uint32_t g = at.begin; g < at.end; ++g) {
       const DeepNodes group = groups[g];
-      block.each_thread([&](int t) {
+      add_up_fields<threads>(in.grid, block, shared.given, [&](int f, int t) {
         const std::uint32_t d = group.begin + static_cast<std::uint32_t>(t);
-        shared.given[t] = ImpulseTerms<float>::none();
-        for (int f = 0; f < 2 && in.grid.field[f] && d < group.end; ++f)
-          shared.given[t].add(meet(nodes[d], colliders[group.collider], f,
-                                   in.grid.field[f][std::int64_t{at.block} * block_nodes + nodes[d].node]));
+        if (d >= group.end) return ImpulseTerms<float>::none();
+        return meet(nodes[d], colliders[group.collider], f,
+                    in.grid.field[f][std::int64_t{at.block} * block_nodes + nodes[d].node]);
       });
-      add_up_threads<threads>(block, shared.given);
       block.each_thread([&](int t) {
         if (t == 0) given[g] = in.places.about_origin(shared.given[0], first);
       });

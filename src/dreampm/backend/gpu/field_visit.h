@@ -96,11 +96,7 @@ struct ApplyFields {
       });
       return;
     }
-    block.each_thread([&](int t) {
-      shared.given[t] = ImpulseTerms<float>::none();
-      for (int f = 0; f < 2 && in.grid.field[f]; ++f) shared.given[t].add(apply(f, b, t));
-    });
-    add_up_threads<threads>(block, shared.given);
+    add_up_fields<threads>(in.grid, block, shared.given, [&](int f, int t) { return apply(f, b, t); });
     block.each_thread([&](int t) {
       if (t == 0) by.given[b] = in.places.about_origin(shared.given[0], in.blocks[b].first);
     });
@@ -139,13 +135,10 @@ struct FieldWork {
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = block.index();
     if (!by.any_in(in, b)) return;  // none is known
-    block.each_thread([&](int t) {
-      shared.given[t] = ImpulseTerms<float>::none();
+    add_up_fields<threads>(in.grid, block, shared.given, [&](int f, int t) {
       const std::int64_t at = std::int64_t{b} * block_nodes + t;
-      for (int f = 0; f < 2 && in.grid.field[f]; ++f)
-        shared.given[t].work += dot(by.impulses[f][at], velocity(in.grid.field[f][at]));
+      return ImpulseTerms<float>::of_work(dot(by.impulses[f][at], velocity(in.grid.field[f][at])));
     });
-    add_up_threads<threads>(block, shared.given);
     block.each_thread([&](int t) {
       if (t == 0) by.given[b].work = static_cast<double>(shared.given[0].work);
     });

@@ -5,7 +5,7 @@
 
 #include "dreampm/backend/gpu/block.h"
 #include "dreampm/backend/gpu/block_particles.h"
-#include "dreampm/backend/gpu/pass.h"
+#include "dreampm/backend/gpu/sort_kernels.h"
 #include "dreampm/state/particle_move.h"
 
 namespace dreampm::gpu {
@@ -16,27 +16,15 @@ struct OpenColumns {
   static constexpr int threads = 128;
   struct Shared {};
   const std::uint32_t *before, *after;  ///< by block of particles: where it begins; `before`: and the end
-  std::uint32_t columns;                ///< of state
-  ParticleColumns in, out;
-  const std::uint32_t* id_in;
-  std::uint32_t* id_out;
+  MovedColumns set;
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
     const auto b = static_cast<std::uint32_t>(block.index());
     block.each_thread([&](int t) {
-      each_particle<threads>(before, b, t, [&](std::uint32_t p) { move(p, after[b] + (p - before[b])); });
+      each_particle<threads>(
+          before, b, t, [&](std::uint32_t p) { set.move(p, after[b] + (p - before[b]), [](float u) { return u; }); });
     });
-  }
-
- private:
-  DM_FN void move(std::uint32_t p, std::uint32_t to) const {
-    id_out[to] = id_in[p];
-    for (int a = 0; a < 3; ++a) {
-      out.u[a][to] = in.u[a][p];
-      if (in.own_velocity[a]) out.own_velocity[a][to] = in.own_velocity[a][p];
-    }
-    for (std::uint32_t c = 0; c < columns; ++c) out.state[c][to] = in.state[c][p];
   }
 };
 

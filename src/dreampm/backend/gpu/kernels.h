@@ -68,15 +68,14 @@ struct MaterialKernels {
   using Stages = std::conditional_t<Viscous<M>, KernelList<ViscousPass<M>>, KernelList<>>;
   using Type = typename JoinLists<Steps, Relaxing, Stages>::Type;
 };
-using SortKernels =
-    KernelList<CountMoves, ClearCounts, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
+using SortKernels = KernelList<CountMoves, CountCells, StartCells, FillPlaces, SortPlaces, MoveParticles, CarryNodes>;
 using FlowKernels = KernelList<OpenColumns, PlaceSeeds, HoldCells, FindEmptyBlocks>;
 /// Those of the grid, and sums.
 using GridKernels =
     KernelList<SumArenas, BeginVisit, ApplyFields, FieldWork, FoldImages, FinishVisit, ReflectImages, AddImageMass,
                MeetDeep, CopyBlocks, FillBlocks, MeetSolids, BeginStage, DragSolids, EndStage, ClearGaps, MeasureGaps,
-               MeasureColliderGaps, FindWallGaps, FillColumn, CopyPlaces, SpreadDistances, AddUp<BlockSums>,
-               AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
+               MeasureColliderGaps, FindWallGaps, Fill<float>, Fill<std::int32_t>, CopyPlaces, SpreadDistances,
+               AddUp<BlockSums>, AddUp<GridTerms>, AddUp<SourceTerms>, SpeedPass>;
 using SurfaceKernels = KernelList<FindActingPoints, FindNodeAreas, FindEffectiveMasses, DescendPoints, SumBodies,
                                   ApplyImpulses, FinishSurfaces>;
 /// Those of programs that read particles on the device.

@@ -6,20 +6,18 @@
 
 namespace dreampm::gpu {
 
-/// Sets all numbers of a column.
-struct FillColumn {
+/// Sets all numbers of an array.
+template <class T>
+struct Fill {
   static constexpr int threads = 128;
   struct Shared {};
-  float* column;
+  T* numbers;
   std::int64_t size;
-  float value;
+  T value;
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    block.each_thread([&](int t) {
-      const std::int64_t i = std::int64_t{block.index()} * threads + t;
-      if (i < size) column[i] = value;
-    });
+    each_item<threads>(block, size, [&](std::int64_t i) { numbers[i] = value; });
   }
 };
 

@@ -17,6 +17,17 @@ struct GridPointers {
   Node<float>* mixture;
 };
 
+/// Adds up body(field, thread) over the fields of the grid and the threads of a block into the
+/// first of `sums`.
+template <int threads, class Block, class Body>
+DM_FN void add_up_fields(const GridPointers& grid, Block& block, ImpulseTerms<float>* sums, const Body& body) {
+  block.each_thread([&](int t) {
+    sums[t] = ImpulseTerms<float>::none();
+    for (int f = 0; f < 2 && grid.field[f]; ++f) sums[t].add(body(f, t));
+  });
+  add_up_threads<threads>(block, sums);
+}
+
 /// Where nodes lie in the scene, as World::node_position.
 struct NodePlaces {
   Vec3d origin;

@@ -98,9 +98,7 @@ void ParticleInserts::place(World<float>& world, Memory& memory) {
   to.now.fit_state(set.state.size());
   to.next.resize(size, own, set.state.size());
   to.next_id.resize(size);
-  launch(*device_,
-         OpenColumns{to.block_start.data(), to.next_block_start.data(), static_cast<std::uint32_t>(set.state.size()),
-                     to.now.pointers(own), to.next.pointers(own), to.id.data(), to.next_id.data()},
+  launch(*device_, OpenColumns{to.block_start.data(), to.next_block_start.data(), to.to_next(own)},
          world.particle_blocks.size());
   std::swap(to.now, to.next);
   std::swap(to.id, to.next_id);

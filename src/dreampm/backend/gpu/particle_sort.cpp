@@ -126,7 +126,8 @@ void ParticleSort::find_cells(World<float>& world, Memory& memory) {
     SetMemory& set = memory.sets[s];
     room.counts.resize(cells), room.start.resize(cells), room.number.resize(set.now.u[0].size());
     set.next_block_start.upload(plan_.moves(s).start);
-    launch(*device_, ClearCounts{room.counts.data(), static_cast<std::int64_t>(cells)}, blocks_for<ClearCounts>(cells));
+    launch(*device_, Fill<std::int32_t>{room.counts.data(), static_cast<std::int64_t>(cells), 0},
+           blocks_for<Fill<std::int32_t>>(cells));
     launch(*device_, CountCells{input(set, room), {targets_.data()}, room.counts.data(), room.number.data()}, old);
     launch(*device_,
            StartCells{room.counts.data(), set.next_block_start.data(), room.start.data(), cells_.data(), s == 0},
@@ -149,10 +150,7 @@ void ParticleSort::move(World<float>& world, std::size_t number, SetMemory& memo
          plan_.old_blocks().size());
   launch(*device_, SortPlaces{room.start.data(), memory.next_block_start.data(), room.from.data()}, blocks);
   const bool own = set.has_own_velocity();
-  launch(*device_,
-         MoveParticles{room.from.data(), static_cast<std::uint32_t>(size),
-                       static_cast<std::uint32_t>(memory.now.state.size()), memory.now.pointers(own),
-                       memory.next.pointers(own), memory.id.data(), memory.next_id.data()},
+  launch(*device_, MoveParticles{room.from.data(), static_cast<std::uint32_t>(size), memory.to_next(own)},
          blocks_for<MoveParticles>(size));
   std::swap(memory.now, memory.next);
   std::swap(memory.id, memory.next_id);

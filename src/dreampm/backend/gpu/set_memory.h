@@ -166,6 +166,12 @@ class SetMemory {
     for (std::size_t a = 0; a < 3; ++a) now.own_velocity[a].download(set.own_velocity[a]);
   }
 
+  /// Columns and ids, from `now` to `next`.
+  MovedColumns to_next(bool own) const {
+    return {static_cast<std::uint32_t>(now.state.size()), now.pointers(own), next.pointers(own), id.data(),
+            next_id.data()};
+  }
+
   /// Makes room for the motion of a pass.
   void fit_motion() {
     const std::size_t n = now.u[0].size();

@@ -88,22 +88,6 @@ struct SortTargets {
   }
 };
 
-/// Sets counters to zero.
-struct ClearCounts {
-  static constexpr int threads = 128;
-  struct Shared {};
-  std::int32_t* counts;
-  std::int64_t size;
-
-  template <class Block>
-  DM_FN void operator()(Block& block, Shared&) const {
-    block.each_thread([&](int t) {
-      const std::int64_t i = std::int64_t{block.index()} * threads + t;
-      if (i < size) counts[i] = 0;
-    });
-  }
-};
-
 /// Counts the particles of each cell of the new blocks, and gives each a number in its cell.
 struct CountCells {
   static constexpr int threads = 128;
@@ -203,28 +187,37 @@ struct SortPlaces {
   }
 };
 
-/// Brings all columns of a set to their new places.
-struct MoveParticles {
-  static constexpr int threads = 128;
-  struct Shared {};
-  const std::uint32_t* from;
-  std::uint32_t size, columns;  ///< particles, and columns of state
+/// All columns of a set, on their way to new places.
+struct MovedColumns {
+  std::uint32_t columns;  ///< of state
   ParticleColumns in, out;
   const std::uint32_t* id_in;
   std::uint32_t* id_out;
 
+  /// `place`: what becomes of a coordinate.
+  template <class Place>
+  DM_FN void move(std::uint32_t p, std::uint32_t to, const Place& place) const {
+    id_out[to] = id_in[p];
+    for (int a = 0; a < 3; ++a) {
+      out.u[a][to] = place(in.u[a][p]);
+      if (in.own_velocity[a]) out.own_velocity[a][to] = in.own_velocity[a][p];
+    }
+    for (std::uint32_t c = 0; c < columns; ++c) out.state[c][to] = in.state[c][p];
+  }
+};
+
+/// Brings the particles of a set to their new places.
+struct MoveParticles {
+  static constexpr int threads = 128;
+  struct Shared {};
+  const std::uint32_t* from;
+  std::uint32_t size;  ///< particles
+  MovedColumns set;
+
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    block.each_thread([&](int t) {
-      const std::uint32_t to = static_cast<std::uint32_t>(block.index()) * threads + static_cast<std::uint32_t>(t);
-      if (to >= size) return;
-      const std::uint32_t p = from[to];
-      id_out[to] = id_in[p];
-      for (int a = 0; a < 3; ++a) {
-        out.u[a][to] = seen_there(in.u[a][p]);
-        if (in.own_velocity[a]) out.own_velocity[a][to] = in.own_velocity[a][p];
-      }
-      for (std::uint32_t c = 0; c < columns; ++c) out.state[c][to] = in.state[c][p];
+    each_item<threads>(block, size, [&](std::int64_t to) {
+      set.move(from[to], static_cast<std::uint32_t>(to), [](float u) { return seen_there(u); });
     });
   }
 };

@@ -110,16 +110,11 @@ struct EndStage {
   template <class Block>
   DM_FN void operator()(Block& block, Shared& shared) const {
     const int b = block.index();
-    block.each_thread([&](int t) {
-      shared.driven[t] = ImpulseTerms<float>::none();
-      for (int f = 0; f < 2 && in.grid.field[f]; ++f)
-        shared.driven[t].work += keep(f, std::int64_t{b} * block_nodes + t);
+    add_up_fields<threads>(in.grid, block, shared.driven, [&](int f, int t) {
+      return ImpulseTerms<float>::of_work(keep(f, std::int64_t{b} * block_nodes + t));
     });
-    add_up_threads<threads>(block, shared.driven);
     block.each_thread([&](int t) {
-      if (t != 0) return;
-      stage.driven[b] = SourceTerms::none();
-      stage.driven[b].work = 0.5 * stage.part * static_cast<double>(shared.driven[0].work);
+      if (t == 0) stage.driven[b] = SourceTerms::of_work(0.5 * stage.part * static_cast<double>(shared.driven[0].work));
     });
   }
 

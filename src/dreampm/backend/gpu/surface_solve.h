@@ -22,9 +22,9 @@ struct FindActingPoints {
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
     block.each_thread([&](int t) {
-      const std::int32_t i = block.index() * threads + t;
-      if (i == 0) *all.fastest2 = 0;
-      if (i >= all.count) return;
+      if (block.index() == 0 && t == 0) *all.fastest2 = 0;
+    });
+    each_item<threads>(block, all.count, [&](std::int64_t i) {
       const ContactPoint& p = all.points[i];
       const CollidingMatter collider = all.colliders[p.collider];
       PointState state{true, 0, 0, 0, 0, 0, {0, 0}, 0, {0, 0, 0}};
@@ -124,9 +124,7 @@ struct FindEffectiveMasses {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    block.each_thread([&](int t) {
-      const std::int32_t i = block.index() * threads + t;
-      if (i >= all.count) return;
+    each_item<threads>(block, all.count, [&](std::int64_t i) {
       PointState& state = all.point_states[i];
       const ContactPoint& p = all.points[i];
       if (!state.acts && !(state.mass > 0 && p.limits)) return;
@@ -134,7 +132,7 @@ struct FindEffectiveMasses {
       const bool unknown = all.bodies && p.body >= 0;
       float held = 0, row = 0;
       Vec3<float> surface{0, 0, 0}, arm{0, 0, 0};
-      float* const weights = all.velocity_weights + 27 * std::int64_t{i};
+      float* const weights = all.velocity_weights + 27 * i;
       for (int m = 0; m < 27; ++m) weights[m] = 0;
       PointWeights(p).each(all, p, [&](int m, const Vec3i& place, float w, std::int64_t n) {
         const float mass = mass_or_none(all.node(n));
@@ -161,9 +159,7 @@ struct DescendPoints {
 
   template <class Block>
   DM_FN void operator()(Block& block, Shared&) const {
-    block.each_thread([&](int t) {
-      const std::int32_t i = block.index() * threads + t;
-      if (i >= all.count) return;
+    each_item<threads>(block, all.count, [&](std::int64_t i) {
       PointState state = all.point_states[i];
       const ContactPoint& p = all.points[i];
       if (!state.acts || !(state.effective_mass > 0) || step > p.iterations) return;
@@ -175,7 +171,7 @@ struct DescendPoints {
         return;
       }
       const CollidingMatter collider = all.colliders[p.collider];
-      const float* const weights = all.velocity_weights + 27 * std::int64_t{i};
+      const float* const weights = all.velocity_weights + 27 * i;
       Vec3<float> v{0, 0, 0};
       PointWeights(p).each(
           all, p, [&](int m, const Vec3i&, float, std::int64_t n) { v += velocity(all.node(n)) * weights[m]; });

@@ -23,8 +23,8 @@ void ThinDistances::prepare(const World<float>& world, Memory& memory, const Obs
     starts_[s].upload(starts);
     std::vector<Buffer<float>>& columns = memory.sets[s].distance;
     for (Buffer<float>& column : columns) column.resize(set.size());
-    launch(*device_, FillColumn{columns[3].data(), static_cast<std::int64_t>(set.size()), no_distance},
-           blocks_for<FillColumn>(set.size()));
+    launch(*device_, Fill<float>{columns[3].data(), static_cast<std::int64_t>(set.size()), no_distance},
+           blocks_for<Fill<float>>(set.size()));
   }
 }
 

@@ -33,6 +33,7 @@ struct ImpulseTerms {
   static DM_FN ImpulseTerms of(const ImpulseSumOf<N>& p, N gained = 0) {
     return {{p.impulse.x, p.impulse.y, p.impulse.z}, {p.angular.x, p.angular.y, p.angular.z}, p.work, gained};
   }
+  static DM_FN ImpulseTerms of_work(N work) { return {{0, 0, 0}, {0, 0, 0}, work, 0}; }
   DM_FN void add(const ImpulseTerms& b) {
     for (int a = 0; a < 3; ++a) impulse[a] += b.impulse[a], angular[a] += b.angular[a];
     work += b.work, gained += b.gained;
