@@ -190,7 +190,7 @@ DeviceParticles Simulation::device_particles(std::string_view material, const Pa
     const auto made = engine.backend().device_particles(engine.world(), engine.motion(), m, fields);
     if (!made)
       fail_input(
-          "device_particles: backend {} keeps particles in the host's memory: `particles` has its arrays there; "
+          "backend {} keeps particles in the host's memory: `particles` has its arrays there; "
           "backend "
           "cuda has arrays on a GPU",
           engine.backend().name());
